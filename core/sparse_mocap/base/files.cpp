@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/base/files.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+
+#ifdef _WIN32
+#include <io.h>
+#include <process.h>
+#else
+#include <fcntl.h>
+#include <unistd.h>
+#endif
+
+#include "sparse_mocap/base/errors.hpp"
+
+namespace sparse_mocap {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void throw_errno(const char* action, const fs::path& path) {
+  throw fs::filesystem_error(action, path, std::error_code(errno, std::generic_category()));
+}
+
+int process_id() {
+#ifdef _WIN32
+  return _getpid();
+#else
+  return getpid();
+#endif
+}
+
+fs::path temporary_beside(const fs::path& path) {
+  static std::atomic<unsigned> counter{0};
+  fs::path temporary = path;
+  temporary += ".tmp." + std::to_string(process_id()) + "." + std::to_string(counter++);
+  return temporary;
+}
+
+void sync_file(std::FILE* file) {
+#ifdef _WIN32
+  _commit(_fileno(file));
+#else
+  if (fsync(fileno(file)) != 0) throw std::system_error(errno, std::generic_category());
+#endif
+}
+
+// A rename is durable only once the folder that holds the name is.
+void sync_folder(const fs::path& folder) {
+#ifndef _WIN32
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  close(descriptor);
+#else
+  (void)folder;
+#endif
+}
+
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const fs::path& target) : path_(temporary_beside(target)) {
+    file_ = std::fopen(path_.string().c_str(), "wbx");
+    if (file_ == nullptr) throw_errno("cannot create file", path_);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (file_ != nullptr) std::fclose(file_);
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove(path_, ignored);
+  }
+
+  void write(std::span<const std::byte> bytes) {
+    if (bytes.empty()) return;
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size())
+      throw_errno("cannot write", path_);
+  }
+
+  void rename_to(const fs::path& target) {
+    if (std::fflush(file_) != 0) throw_errno("cannot write", path_);
+    sync_file(file_);
+    std::FILE* closing = file_;
+    file_ = nullptr;
+    if (std::fclose(closing) != 0) throw_errno("cannot write", path_);
+    fs::rename(path_, target);
+    path_.clear();
+  }
+
+ private:
+  fs::path path_;
+  std::FILE* file_ = nullptr;
+};
+
+}  // namespace
+
+std::string read_file(const fs::path& path, std::size_t max_bytes) {
+  std::error_code error;
+  const auto status = fs::status(path, error);
+  if (!fs::exists(status)) throw FormatError({path}, "no such file", "check the path");
+  if (fs::is_directory(status)) throw FormatError({path}, "is a folder, not a file");
+  if (!fs::is_regular_file(status)) throw FormatError({path}, "is not a regular file");
+  const auto size = fs::file_size(path, error);
+  if (error) throw FormatError({path}, "cannot be read: " + error.message());
+  if (size > max_bytes) {
+    throw FormatError({path}, "has " + std::to_string(size) + " bytes, more than the limit of " +
+                                  std::to_string(max_bytes));
+  }
+  std::FILE* file = std::fopen(path.string().c_str(), "rb");
+  if (file == nullptr) {
+    throw FormatError({path}, std::string("cannot be read: ") + std::strerror(errno));
+  }
+  std::string content(size, '\0');
+  const std::size_t got = std::fread(content.data(), 1, content.size(), file);
+  std::fclose(file);
+  if (got != content.size()) throw FormatError({path}, "changed or failed while being read");
+  return content;
+}
+
+void write_file_atomically(const fs::path& path,
+                           std::span<const std::span<const std::byte>> pieces) {
+  TemporaryFile temporary(path);
+  for (const auto piece : pieces) temporary.write(piece);
+  temporary.rename_to(path);
+  sync_folder(path.has_parent_path() ? path.parent_path() : fs::path("."));
+}
+
+void write_file_atomically(const fs::path& path, const std::string& text) {
+  const auto bytes = std::as_bytes(std::span(text));
+  write_file_atomically(path, std::span(&bytes, 1));
+}
+
+}  // namespace sparse_mocap

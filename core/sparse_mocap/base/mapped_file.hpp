@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace sparse_mocap {
+
+// Read-only bytes that stay where they are for as long as somebody holds them: a file mapped into
+// memory, or a buffer.
+class Bytes {
+ public:
+  virtual ~Bytes() = default;
+  virtual std::span<const std::byte> view() const = 0;
+};
+
+std::shared_ptr<const Bytes> own_bytes(std::vector<std::byte> bytes);
+
+// Maps the file where the system can, otherwise reads it. A file that is replaced by rename keeps
+// its old content here. Throws FormatError when it is missing, a folder or unreadable.
+std::shared_ptr<const Bytes> map_file(const std::filesystem::path& path);
+
+}  // namespace sparse_mocap

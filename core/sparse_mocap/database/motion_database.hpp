@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sparse_mocap/base/mapped_file.hpp"
+#include "sparse_mocap/motion/skeleton.hpp"
+#include "sparse_mocap/sensors/sites.hpp"
+
+namespace sparse_mocap {
+
+inline constexpr int kDatabaseFormatVersion = 1;
+
+// One row a frame, as it lies in the file.
+template <typename Scalar>
+using RowsView =
+    Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+using FloatRows = RowsView<float>;
+
+// A stretch of rows [begin, end) that is one continuous motion.
+struct Clip {
+  std::string name;
+  std::string actor;
+  std::string motion_class;
+  std::string source;       // file name
+  std::string source_hash;  // XXH3 of the source file
+  bool is_mirrored = false;
+  bool is_reversed = false;
+  int begin = 0;
+  int end = 0;
+
+  int num_frames() const { return end - begin; }
+};
+
+// Columns of root_motion.
+namespace root_motion_column {
+inline constexpr int velocity_left = 0;     // m/s, in the heading frame
+inline constexpr int velocity_forward = 1;  // m/s, in the heading frame
+inline constexpr int yaw_rate = 2;          // rad/s
+inline constexpr int height = 3;            // m, root above the floor
+inline constexpr int count = 4;
+}  // namespace root_motion_column
+
+// The knowledge base of Tautges et al. 2011, section 3, read-only: for each frame the pose, the
+// joints' positions and what every virtual sensor reads. Immutable, so any number of threads may
+// use one. Views live as long as the database.
+class MotionDatabase {
+ public:
+  // Checks the whole file before use. Throws FormatError.
+  static std::shared_ptr<const MotionDatabase> open(const std::filesystem::path& path);
+  // The same on bytes that are (or will be) such a file; path is for messages.
+  static std::shared_ptr<const MotionDatabase> from_bytes(std::shared_ptr<const Bytes> bytes,
+                                                          const std::filesystem::path& path);
+
+  int num_frames() const { return static_cast<int>(angles_.rows()); }
+  double rate_hz() const { return rate_hz_; }
+  double frame_time_s() const { return 1.0 / rate_hz_; }
+  const Skeleton& skeleton() const { return skeleton_; }
+  const std::vector<Clip>& clips() const { return clips_; }
+  const std::vector<std::string>& site_names() const { return site_names_; }
+  const std::filesystem::path& path() const { return path_; }
+  const std::string& build_info() const { return build_info_; }  // JSON
+
+  const FloatRows& angles() const { return angles_; }            // rad, root without heading
+  const FloatRows& positions() const { return positions_; }      // m, heading frame, 3 x joints
+  const FloatRows& root_motion() const { return root_motion_; }  // see root_motion_column
+  const FloatRows& contacts() const { return contacts_; }        // left, right: 0 or 1
+  // Three columns a site, in the order of site_names.
+  const FloatRows& specific_force_pivot() const { return specific_force_pivot_; }  // m/s^2
+  const FloatRows& specific_force_end() const { return specific_force_end_; }      // m/s^2
+  const FloatRows& angular_velocity() const { return angular_velocity_; }          // rad/s
+  const FloatRows& up() const { return up_; }
+  int clip_index(int frame) const { return clip_index_(frame, 0); }
+
+ private:
+  MotionDatabase() = default;
+  friend class DatabaseReader;
+
+  std::shared_ptr<const Bytes> bytes_;
+  std::filesystem::path path_;
+  double rate_hz_ = 0.0;
+  Skeleton skeleton_;
+  std::vector<Clip> clips_;
+  std::vector<std::string> site_names_;
+  std::string build_info_;
+  FloatRows angles_{nullptr, 0, 0};
+  FloatRows positions_{nullptr, 0, 0};
+  FloatRows root_motion_{nullptr, 0, 0};
+  FloatRows contacts_{nullptr, 0, 0};
+  FloatRows specific_force_pivot_{nullptr, 0, 0};
+  FloatRows specific_force_end_{nullptr, 0, 0};
+  FloatRows angular_velocity_{nullptr, 0, 0};
+  FloatRows up_{nullptr, 0, 0};
+  RowsView<std::int32_t> clip_index_{nullptr, 0, 0};
+};
+
+// The rows of one clip, or of many one after another, while a database is being built.
+struct DatabaseRows {
+  using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Rows angles, positions, root_motion, contacts;
+  Rows specific_force_pivot, specific_force_end, angular_velocity, up;
+
+  int num_frames() const { return static_cast<int>(angles.rows()); }
+};
+
+// Everything that a database file holds.
+struct DatabaseContent {
+  Skeleton skeleton;
+  double rate_hz = 25.0;
+  std::vector<Clip> clips;             // begin and end are set on writing
+  std::vector<DatabaseRows> clip_rows;  // one entry a clip
+  std::string build_info;              // JSON: options, sources, versions
+};
+
+// The file as it will lie on disk.
+std::vector<std::byte> encode_database(const DatabaseContent& content);
+
+}  // namespace sparse_mocap

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sparse_mocap/database/motion_database.hpp"
+#include "sparse_mocap/reconstruction/method.hpp"
+
+namespace sparse_mocap {
+
+// What every method is compared with. Each gives one database frame a reading; clips in
+// excluded_clips are never used.
+
+// Plays back the database: the frame at the end of the best path of the online lazy neighbourhood
+// graph (K = 4096, raw readings).
+std::vector<int> playback_best_path(const MotionDatabase& database,
+                                    const std::vector<WornSensor>& sensors,
+                                    const std::vector<Reading>& take,
+                                    const std::vector<int>& excluded_clips);
+
+// The frame whose last `window` readings are nearest to the take's (the idea of Slyper and Hodgins
+// 2008).
+std::vector<int> nearest_windows(const MotionDatabase& database,
+                                 const std::vector<WornSensor>& sensors,
+                                 const std::vector<Reading>& take, int window,
+                                 const std::vector<int>& excluded_clips);
+
+// The frame whose pose is nearest to the true one (positions: 63 x frames, m, heading frame): what
+// retrieval could reach at best.
+std::vector<int> nearest_poses(const MotionDatabase& database, const Eigen::MatrixXd& positions,
+                               const std::vector<int>& excluded_clips);
+
+}  // namespace sparse_mocap

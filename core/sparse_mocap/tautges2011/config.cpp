@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/tautges2011/config.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "sparse_mocap/base/errors.hpp"
+
+namespace sparse_mocap::tautges2011 {
+namespace {
+
+void require(double value, double lowest, double highest, const char* name) {
+  if (value >= lowest && value <= highest) return;
+  throw ConfigError(std::string(name) + " must be between " + std::to_string(lowest) + " and " +
+                    std::to_string(highest) + ", got " + std::to_string(value));
+}
+
+Config paper() {
+  Config config;
+  // The paper does not state M; it found any from 8 on alike (figure 9b).
+  config.olng.forgetting = 1.0;
+  config.olng.window = 20;
+  return config;
+}
+
+Config best_measured() {
+  Config config;
+  return config;
+}
+
+}  // namespace
+
+void Config::validate() const {
+  require(num_neighbours, 1, 1e6, "num_neighbours (K)");
+  require(neighbour_fraction, 1e-6, 1.0, "neighbour_fraction");
+  require(num_paths, 1, num_neighbours, "num_paths (I)");
+  require(leg_weight, 1e-3, 1e3, "leg_weight");
+  require(olng.penalty, 0.0, 100.0, "olng.penalty");
+  require(olng.forgetting, 0.0, 1.0, "olng.forgetting");
+  require(olng.window, 0, 10000, "olng.window (M)");
+  require(sharpness, 0.0, 1e3, "sharpness");
+  require(offline_sharpness, 0.0, 1e3, "offline_sharpness");
+  require(offline_smoothing_s, 0.0, 1.0, "offline_smoothing_s");
+  require(regression_ridge, 0.0, 1e9, "regression_ridge");
+  require(kernel_power, 0.1, 2.0, "kernel_power");
+  require(pca_variance, 0.01, 1.0, "pca_variance");
+  require(max_iterations, 1, 10000, "max_iterations");
+  require(foot_lock, 0.0, 1.0, "foot_lock");
+  for (const double weight : {w_prior, w_pose, w_motion, w_smooth, w_contr})
+    require(weight, 0.0, 1e6, "an energy weight");
+  if (w_prior * w_pose <= 0.0) throw ConfigError("w_prior and w_pose must be positive");
+  if (features.parts.empty()) throw ConfigError("features need at least one part");
+}
+
+Config preset(std::string_view name) {
+  if (name == "paper") return paper();
+  if (name == "default") return best_measured();
+  throw ConfigError("unknown preset '" + std::string(name) + "'; known are default, paper");
+}
+
+const std::vector<std::string_view>& preset_names() {
+  static const std::vector<std::string_view> names{"default", "paper"};
+  return names;
+}
+
+}  // namespace sparse_mocap::tautges2011

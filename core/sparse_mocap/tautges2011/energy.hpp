@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sparse_mocap/motion/skeleton.hpp"
+
+namespace sparse_mocap::tautges2011 {
+
+// What of a pose a term compares: its angles, or positions (3 rows a joint) of some joints' ends.
+struct TermSpace {
+  bool is_angles = false;
+  std::vector<int> joints;  // positions only; empty: all
+};
+
+// One kernel sum of the energy: weight * sum_i w_i |y_i - y|^power (equations (5), (7), (8), (11)
+// with power 1/2), y the pose's angles (rad) or stacked joint positions (m). Norms are of the whole
+// vector.
+struct KernelTerm {
+  TermSpace space;
+  double weight = 1.0;
+  double power = 0.5;
+  Eigen::MatrixXd targets;  // y_i, one column a path
+};
+
+// The energy of equations (2) and (3): a sum of kernel sums that share the paths' weights w_i.
+//
+// Distances are softened by kSoftening, where the square root's slope is infinite:
+// |r| = sqrt(r^2 + kSoftening^2).
+class Energy {
+ public:
+  static constexpr double kSoftening = 1e-3;  // rad or m
+
+  Energy(const Skeleton& skeleton, Eigen::VectorXd weights, std::vector<KernelTerm> terms);
+
+  double value(const Eigen::VectorXd& angles) const;
+  // Also d value / d angles.
+  double value_and_gradient(const Eigen::VectorXd& angles, Eigen::VectorXd& gradient) const;
+
+  // The quadratic in the pose that touches the energy at angles and lies above it for every fixed
+  // linearisation of the positions: each kernel sum collapses to one weighted mean.
+  //   value at the pose, gradient g and matrix H with model(d) = value + g.d + d.H.d / 2,
+  // both restricted to the columns of basis (angles = ... + basis * d).
+  struct Model {
+    double value = 0.0;
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd hessian;
+  };
+  Model majorised(const Eigen::VectorXd& angles, const Eigen::MatrixXd& basis) const;
+
+ private:
+  struct Collapsed;
+  Collapsed collapse(const KernelTerm& term, const Eigen::VectorXd& y) const;
+  Eigen::VectorXd observed(const KernelTerm& term, const Eigen::VectorXd& angles,
+                           const JointTransforms& transforms) const;
+  Eigen::MatrixXd observed_jacobian(const KernelTerm& term,
+                                    const Eigen::MatrixXd& positions_by_basis,
+                                    const Eigen::MatrixXd& basis) const;
+
+  const Skeleton& skeleton_;
+  Eigen::VectorXd weights_;
+  std::vector<KernelTerm> terms_;
+};
+
+}  // namespace sparse_mocap::tautges2011

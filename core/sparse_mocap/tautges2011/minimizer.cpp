@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/tautges2011/minimizer.hpp"
+
+#include <limits>
+#include <stdexcept>
+
+#include <Eigen/Cholesky>
+
+namespace sparse_mocap::tautges2011 {
+namespace {
+
+constexpr double kRelativeDecrease = 1e-7;  // below this share of the energy, it has converged
+constexpr int kMaxHalvings = 12;
+
+Eigen::VectorXd best_start(const Energy& energy, const PoseSubspace& subspace,
+                           const std::vector<Eigen::VectorXd>& starts) {
+  if (starts.empty()) throw std::invalid_argument("minimize: at least one start is needed");
+  Eigen::VectorXd best;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& start : starts) {
+    const Eigen::VectorXd coordinates = subspace.coordinates(start);
+    if (starts.size() == 1) return coordinates;
+    const double value = energy.value(subspace.pose(coordinates));
+    if (value >= lowest) continue;
+    lowest = value;
+    best = coordinates;
+  }
+  return best;
+}
+
+// The minimiser of the model, a little regularised so that flat directions stay where they are.
+Eigen::VectorXd model_step(const Energy::Model& model) {
+  Eigen::MatrixXd h = model.hessian;
+  h.diagonal().array() += 1e-9 * (1.0 + h.diagonal().maxCoeff());
+  return -h.ldlt().solve(model.gradient);
+}
+
+}  // namespace
+
+Minimum minimize(const Energy& energy, const PoseSubspace& subspace,
+                 const std::vector<Eigen::VectorXd>& starts, int max_iterations) {
+  Eigen::VectorXd y = best_start(energy, subspace, starts);
+  Minimum minimum;
+  Energy::Model model = energy.majorised(subspace.pose(y), subspace.basis);
+  while (minimum.iterations < max_iterations && !minimum.is_converged) {
+    ++minimum.iterations;
+    Eigen::VectorXd step = model_step(model);
+    double value = energy.value(subspace.pose(y + step));
+    for (int halving = 0; value > model.value && halving < kMaxHalvings; ++halving) {
+      step *= 0.5;
+      value = energy.value(subspace.pose(y + step));
+    }
+    if (value > model.value) {
+      minimum.is_converged = true;
+      break;
+    }
+    minimum.is_converged = model.value - value <= kRelativeDecrease * model.value;
+    y += step;
+    model = energy.majorised(subspace.pose(y), subspace.basis);
+  }
+  minimum.angles = subspace.pose(y);
+  minimum.energy = model.value;
+  return minimum;
+}
+
+}  // namespace sparse_mocap::tautges2011

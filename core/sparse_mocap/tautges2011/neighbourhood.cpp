@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/tautges2011/neighbourhood.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace sparse_mocap::tautges2011 {
+
+std::vector<Path> best_paths(std::span<const Path> paths, int num_paths) {
+  std::vector<Path> best(paths.begin(), paths.end());
+  const auto count = std::min(best.size(), static_cast<std::size_t>(num_paths));
+  const auto last = best.begin() + static_cast<std::ptrdiff_t>(count);
+  const auto is_better = [](const Path& a, const Path& b) {
+    return a.reward != b.reward ? a.reward > b.reward : a.frame < b.frame;
+  };
+  std::partial_sort(best.begin(), last, best.end(), is_better);
+  best.erase(last, best.end());
+  return best;
+}
+
+Eigen::VectorXd path_weights(std::span<const Path> paths, WeightRule rule, double sharpness) {
+  const auto n = static_cast<Eigen::Index>(paths.size());
+  Eigen::VectorXd rewards(n);
+  for (Eigen::Index i = 0; i < n; ++i) rewards[i] = paths[static_cast<std::size_t>(i)].reward;
+  Eigen::VectorXd weights;
+  if (rule == WeightRule::linear) {
+    weights = rewards.array() - rewards.minCoeff();
+  } else {
+    const double mean = rewards.mean();
+    const double deviation = std::sqrt((rewards.array() - mean).square().mean());
+    const double scale = deviation > 0.0 ? sharpness / deviation : 0.0;
+    weights = (scale * (rewards.array() - rewards.maxCoeff())).exp();
+  }
+  const double total = weights.sum();
+  if (total <= 0.0) return Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n));
+  return weights / total;
+}
+
+void kinematics_at(const MotionDatabase& database, int frame, Eigen::Ref<Eigen::VectorXd> velocity,
+                   Eigen::Ref<Eigen::VectorXd> acceleration) {
+  const Clip& clip =
+      database.clips()[static_cast<std::size_t>(database.clip_index(frame))];
+  const double dt = database.frame_time_s();
+  if (clip.num_frames() < 3) {
+    velocity.setZero();
+    acceleration.setZero();
+    return;
+  }
+  const int centre = std::clamp(frame, clip.begin + 1, clip.end - 2);
+  const auto row = [&](int n) {
+    return database.positions().row(n).transpose().cast<double>();
+  };
+  velocity = (row(centre + 1) - row(centre - 1)) / (2.0 * dt);
+  acceleration = (row(centre + 1) - 2.0 * row(centre) + row(centre - 1)) / (dt * dt);
+}
+
+Neighbourhood gather(const MotionDatabase& database, std::vector<Path> paths,
+                     Eigen::VectorXd weights) {
+  Neighbourhood out;
+  const auto n = static_cast<Eigen::Index>(paths.size());
+  const Eigen::Index dimensions = database.positions().cols();
+  out.angles.resize(database.angles().cols(), n);
+  for (auto* matrix : {&out.positions, &out.velocities, &out.accelerations, &out.steps,
+                       &out.velocities_before})
+    matrix->resize(dimensions, n);
+  Eigen::VectorXd unused(dimensions);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Path& path = paths[static_cast<std::size_t>(i)];
+    const Clip& clip =
+        database.clips()[static_cast<std::size_t>(database.clip_index(path.frame))];
+    out.angles.col(i) = database.angles().row(path.frame).transpose().cast<double>();
+    out.positions.col(i) = database.positions().row(path.frame).transpose().cast<double>();
+    kinematics_at(database, path.frame, out.velocities.col(i), out.accelerations.col(i));
+    const int into = std::max(path.frame, std::min(clip.begin + 1, clip.end - 1));
+    const int from = std::max(into - 1, clip.begin);
+    out.steps.col(i) = (database.positions().row(into) - database.positions().row(from))
+                           .transpose()
+                           .cast<double>();
+    const int before =
+        path.previous_frame >= 0 ? path.previous_frame : std::max(path.frame - 1, clip.begin);
+    kinematics_at(database, before, out.velocities_before.col(i), unused);
+  }
+  // Angles a full turn apart are one pose; the best path says which turn is meant.
+  const Eigen::VectorXd reference = out.angles.col(0);
+  out.angles.colwise() -= reference;
+  out.angles.array() -= 2.0 * kPi * (out.angles.array() / (2.0 * kPi)).round();
+  out.angles.colwise() += reference;
+  out.paths = std::move(paths);
+  out.weights = std::move(weights);
+  return out;
+}
+
+}  // namespace sparse_mocap::tautges2011

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/tautges2011/regression.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+namespace sparse_mocap::tautges2011 {
+
+Eigen::VectorXd regression_weights(const Eigen::MatrixXf& features, const Eigen::VectorXf& query,
+                                   const Eigen::VectorXd& weights, double ridge) {
+  std::vector<Eigen::Index> known;
+  for (Eigen::Index d = 0; d < query.size(); ++d)
+    if (!std::isnan(query[d])) known.push_back(d);
+  if (known.empty()) return weights;
+  const Eigen::MatrixXf selected = features(known, Eigen::all);
+  const Eigen::VectorXf w = weights.cast<float>();
+  const Eigen::VectorXf mean = selected * w;
+  const Eigen::MatrixXf centred = selected.colwise() - mean;
+  Eigen::MatrixXf covariance = Eigen::MatrixXf::Zero(centred.rows(), centred.rows());
+  const Eigen::MatrixXf rooted = centred * w.cwiseSqrt().asDiagonal();
+  covariance.selfadjointView<Eigen::Lower>().rankUpdate(rooted);
+  const float mean_variance = covariance.trace() / static_cast<float>(covariance.rows());
+  if (!(mean_variance > 0.0F)) return weights;
+  covariance.diagonal().array() += static_cast<float>(ridge) * mean_variance;
+  const Eigen::VectorXf direction =
+      covariance.selfadjointView<Eigen::Lower>().llt().solve(query(known) - mean);
+  const Eigen::VectorXf lean = centred.transpose() * direction;
+  return weights.array() * (1.0 + lean.cast<double>().array());
+}
+
+void shift_to_regression(Neighbourhood& neighbours, const Eigen::VectorXd& regression_weights) {
+  const Eigen::VectorXd difference = regression_weights - neighbours.weights;
+  const Eigen::VectorXd angle_shift = neighbours.angles * difference;
+  const Eigen::VectorXd position_shift = neighbours.positions * difference;
+  neighbours.angles.colwise() += angle_shift;
+  neighbours.positions.colwise() += position_shift;
+}
+
+}  // namespace sparse_mocap::tautges2011

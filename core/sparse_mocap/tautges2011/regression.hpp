@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+
+#include "sparse_mocap/tautges2011/neighbourhood.hpp"
+
+namespace sparse_mocap::tautges2011 {
+
+// Local linear (ridge) regression as a re-weighting: for any quantity y_i of the neighbours, the
+// value that regression on their features predicts at the query is sum_i out_i y_i.
+//   out_i = w_i (1 + (f_i - f)^T (C + ridge s I)^-1 (query - f)), f and C the weighted mean and
+//   covariance of the features, s their mean variance. Sums to 1; may be negative.
+// features: dimensions x I. Dimensions where the query is NaN take no part.
+Eigen::VectorXd regression_weights(const Eigen::MatrixXf& features, const Eigen::VectorXf& query,
+                                   const Eigen::VectorXd& weights, double ridge);
+
+// Moves all neighbours' poses alike, so that their weighted mean becomes the one that the regression
+// predicts; how they differ from each other stays.
+void shift_to_regression(Neighbourhood& neighbours, const Eigen::VectorXd& regression_weights);
+
+}  // namespace sparse_mocap::tautges2011
