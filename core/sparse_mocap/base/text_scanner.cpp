@@ -82,7 +82,7 @@ std::string lower_case(std::string_view text) {
   return result;
 }
 
-std::string quoted(std::string_view token) {
+std::string in_quotes(std::string_view token) {
   constexpr std::size_t kMaxShown = 60;
   constexpr std::string_view kHexDigits = "0123456789abcdef";
   std::string result = "\"";
@@ -199,11 +199,10 @@ double TextScanner::number_or_fail(std::string_view token, std::string_view what
   if (status == NumberStatus::ok) return value;
   const std::string expected = "expected " + std::string(what) + ", ";
   if (token.empty()) fail(token, expected + "but the file ends");
-  if (status == NumberStatus::too_large) fail(token, quoted(token) + " is too large a number");
-  const char* remedy = has_decimal_comma(token)
-                           ? "it has a decimal comma; write numbers with a point"
-                           : "";
-  fail(token, expected + "got " + quoted(token), remedy);
+  if (status == NumberStatus::too_large) fail(token, in_quotes(token) + " is too large a number");
+  const char* remedy =
+      has_decimal_comma(token) ? "it has a decimal comma; write numbers with a point" : "";
+  fail(token, expected + "got " + in_quotes(token), remedy);
 }
 
 std::size_t TextScanner::numbers_on_line(double* values, std::size_t max) {

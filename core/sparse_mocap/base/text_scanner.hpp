@@ -23,8 +23,8 @@ std::string lower_case(std::string_view text);
 
 // Walks over the tokens of a text file and knows the line and column of each.
 //
-// A token is a string_view into the text: it stays valid as long as the scanner does and its address
-// tells where it stands. Where the text or the line ends, the token is empty.
+// A token is a string_view into the text: it stays valid as long as the scanner does and its
+// address tells where it stands. Where the text or the line ends, the token is empty.
 class TextScanner {
  public:
   struct Syntax {
@@ -90,6 +90,6 @@ class TextScanner {
 };
 
 // The token in quotes, shortened and with unprintable bytes escaped, for error messages.
-std::string quoted(std::string_view token);
+std::string in_quotes(std::string_view token);
 
 }  // namespace sparse_mocap

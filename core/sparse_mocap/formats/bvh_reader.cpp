@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sparse_mocap/base/files.hpp"
+#include "sparse_mocap/formats/bvh.hpp"
+#include "sparse_mocap/formats/bvh_hierarchy.hpp"
+
+namespace sparse_mocap {
+namespace {
+
+constexpr double kShortestFrame_s = 1e-4;
+constexpr double kLongestFrame_s = 1.0;
+// A joint whose position channels stay this close to its OFFSET does not move.
+constexpr double kSameOffset_m = 1e-7;
+
+// What one column of a frame's row does.
+struct Column {
+  std::size_t index = 0;
+  Axis axis = Axis::x;
+};
+
+// The columns of a joint.
+struct JointColumns {
+  std::vector<Column> positions;
+  std::vector<Column> rotations;  // outermost first
+};
+
+struct Header {
+  int declared_frames = 0;
+  FileLocation location;
+  double frame_time_s = 0.0;
+};
+
+Skeleton skeleton_of(const BvhHierarchy& hierarchy) {
+  std::vector<Joint> joints;
+  std::vector<std::string> names;
+  for (int j = 0; j < hierarchy.first_tree_end; ++j) {
+    const auto& source = hierarchy.joints[static_cast<std::size_t>(j)];
+    Joint joint;
+    joint.parent = source.parent;
+    joint.offset_parent = *source.offset;
+    if (source.end_site && source.num_children == 1) joint.bone = *source.end_site;
+    for (const auto& channel : *source.channels)
+      if (channel.is_rotation) joint.axes.push_back(channel.axis);
+    joints.push_back(std::move(joint));
+    names.push_back(source.name);
+  }
+  names = unique_names(std::move(names));
+  for (std::size_t j = 0; j < joints.size(); ++j) joints[j].name = std::move(names[j]);
+  return Skeleton(std::move(joints));
+}
+
+void warn_about_renamed(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
+                        std::vector<ReadWarning>& warnings) {
+  for (int j = 0; j < skeleton.num_joints(); ++j) {
+    const auto& source = hierarchy.joints[static_cast<std::size_t>(j)];
+    const auto& name = skeleton.joint(j).name;
+    if (name == source.name) continue;
+    warnings.push_back({source.location, "a second joint named " + in_quotes(source.name) +
+                                             "; it is called " + in_quotes(name)});
+  }
+}
+
+// Reads the numbers below MOTION into a motion.
+class MotionReader {
+ public:
+  MotionReader(TextScanner& scanner, const BvhHierarchy& hierarchy, const ReadOptions& options,
+               MotionFile& file)
+      : scanner_(scanner), options_(options), motion_(file.motion), warnings_(file.warnings) {
+    std::size_t column = 0;
+    for (int j = 0; j < static_cast<int>(hierarchy.joints.size()); ++j) {
+      if (j < hierarchy.first_tree_end) columns_.emplace_back();
+      for (const auto& channel : *hierarchy.joints[static_cast<std::size_t>(j)].channels) {
+        const Column entry{column++, channel.axis};
+        if (j >= hierarchy.first_tree_end) continue;
+        (channel.is_rotation ? columns_.back().rotations : columns_.back().positions)
+            .push_back(entry);
+      }
+    }
+    row_.resize(column);
+    track_of_joint_.assign(columns_.size(), -1);
+  }
+
+  void read() {
+    header_ = read_header();
+    motion_.frame_time_s = header_.frame_time_s;
+    if (row_.empty() && !options_.allow_no_frames)
+      throw FormatError(header_.location, "no joint has a channel, so there is no motion");
+    reserve();
+    while (!row_.empty() && !scanner_.at_end()) {
+      read_row();
+      append_frame();
+    }
+    check_frame_count();
+  }
+
+ private:
+  Header read_header();
+  double read_field(std::string_view first_word, std::string_view second_word,
+                    std::string_view what);
+  void reserve();
+  void read_row();
+  void append_frame();
+  Vec3 position(std::size_t joint) const;
+  void append_offset(std::size_t joint, const Vec3& offset);
+  void check_frame_count();
+
+  TextScanner& scanner_;
+  const ReadOptions& options_;
+  Motion& motion_;
+  std::vector<ReadWarning>& warnings_;
+  std::vector<JointColumns> columns_;
+  std::vector<double> row_;
+  std::vector<int> track_of_joint_;  // index into the offset tracks, -1: none yet
+  Header header_;
+};
+
+// "Frames: 12", "Frames :12", "Frame Time: 0.1" and the like.
+double MotionReader::read_field(std::string_view first_word, std::string_view second_word,
+                                std::string_view what) {
+  for (const auto word : {first_word, second_word}) {
+    if (word.empty()) continue;
+    scanner_.at_end();
+    const auto token = scanner_.next_until(":");
+    if (equal_ignoring_case(token, word)) continue;
+    const std::string got = token.empty() ? ", but the file ends" : ", got " + in_quotes(token);
+    scanner_.fail(token, "expected " + std::string(what) + got);
+  }
+  scanner_.skip_character(':');
+  return scanner_.number(what);
+}
+
+Header MotionReader::read_header() {
+  Header header;
+  scanner_.at_end();
+  const auto frames_token = scanner_.peek();
+  header.location = scanner_.location(frames_token);
+  const double frames = read_field("Frames", "", "'Frames:' and a number");
+  if (frames < 0 || frames != std::floor(frames))
+    throw FormatError(header.location, "the number of frames must be a whole number from 0 on");
+  const int most = max_frames_of(static_cast<int>(columns_.size()), options_);
+  if (frames > most)
+    throw FormatError(header.location,
+                      "the file declares more frames than the limit of " + std::to_string(most));
+  header.declared_frames = static_cast<int>(frames);
+  scanner_.at_end();
+  const auto time_token = scanner_.peek();
+  header.frame_time_s = read_field("Frame", "Time", "'Frame Time:' and a number");
+  if (header.frame_time_s < kShortestFrame_s || header.frame_time_s > kLongestFrame_s)
+    scanner_.fail(time_token, "the frame time must be from 0.0001 to 1 s");
+  return header;
+}
+
+// The declared count is only believed as far as the bytes that are left can hold it.
+void MotionReader::reserve() {
+  const auto possible = scanner_.bytes_left() / (2 * std::max<std::size_t>(1, row_.size())) + 1;
+  const auto frames = std::min(static_cast<std::size_t>(header_.declared_frames), possible);
+  motion_.root_positions.reserve(frames);
+  motion_.rotations.reserve(frames * columns_.size());
+}
+
+// A row is usually a line; it may be wrapped, but a line never holds parts of two rows.
+void MotionReader::read_row() {
+  std::size_t count = scanner_.numbers_on_line(row_.data(), row_.size());
+  const auto row_name = [&] { return "row of frame " + std::to_string(motion_.num_frames() + 1); };
+  const auto expected = [&] { return ", expected " + std::to_string(row_.size()); };
+  if (count == row_.size()) {
+    if (scanner_.at_line_end()) return;
+    scanner_.fail(scanner_.peek(), "the " + row_name() + " has more values" + expected());
+  }
+  while (count < row_.size()) {
+    const auto line_end = scanner_.here();
+    const std::string problem =
+        "the " + row_name() + " has " + std::to_string(count) + " values" + expected();
+    if (scanner_.at_end()) scanner_.fail(line_end, problem, "the file may be cut off");
+    count += scanner_.numbers_on_line(row_.data() + count, row_.size() - count);
+    if (!scanner_.at_line_end()) scanner_.fail(line_end, problem);
+  }
+}
+
+void MotionReader::append_frame() {
+  if (motion_.num_frames() >= max_frames_of(static_cast<int>(columns_.size()), options_))
+    scanner_.fail(scanner_.here(), "there are more frames than the limit of " +
+                                       std::to_string(motion_.num_frames()));
+  for (std::size_t j = 0; j < columns_.size(); ++j) {
+    Quat rotation = Quat::Identity();
+    for (const auto& [index, axis] : columns_[j].rotations)
+      rotation = turned_about(rotation, axis, row_[index] * kRadiansPerDegree);
+    motion_.rotations.push_back(rotation);
+    if (j > 0 && !columns_[j].positions.empty()) append_offset(j, position(j));
+  }
+  motion_.root_positions.push_back(position(0));
+}
+
+// Position channels replace the OFFSET, component by component.
+Vec3 MotionReader::position(std::size_t joint) const {
+  Vec3 result = motion_.skeleton.joints()[joint].offset_parent;
+  for (const auto& [index, axis] : columns_[joint].positions)
+    result[static_cast<Eigen::Index>(axis)] = row_[index] * options_.bvh_unit_m;
+  if (result.cwiseAbs().maxCoeff() > kMaxLength_m)
+    scanner_.fail(scanner_.here(), "a position in the row of frame " +
+                                       std::to_string(motion_.num_frames() + 1) +
+                                       " is too large to be a place");
+  return result;
+}
+
+// A track begins when the joint first leaves its OFFSET.
+void MotionReader::append_offset(std::size_t joint, const Vec3& offset) {
+  auto& tracks = motion_.offset_tracks;
+  if (track_of_joint_[joint] < 0) {
+    const Vec3& rest = motion_.skeleton.joints()[joint].offset_parent;
+    if ((offset - rest).cwiseAbs().maxCoeff() <= kSameOffset_m) return;
+    track_of_joint_[joint] = static_cast<int>(tracks.size());
+    tracks.push_back({static_cast<int>(joint),
+                      std::vector<Vec3>(static_cast<std::size_t>(motion_.num_frames()), rest)});
+  }
+  tracks[static_cast<std::size_t>(track_of_joint_[joint])].offset_parent.push_back(offset);
+}
+
+void MotionReader::check_frame_count() {
+  const int rows = motion_.num_frames();
+  if (rows == 0 && !options_.allow_no_frames)
+    throw FormatError(header_.location, "there is no frame, so there is no motion");
+  if (rows != header_.declared_frames)
+    warnings_.push_back({header_.location, "the file declares " +
+                                               std::to_string(header_.declared_frames) +
+                                               " frames and has " + std::to_string(rows) +
+                                               "; those that it has are read"});
+}
+
+// The rotation that brings an axis up (to y).
+Quat rotation_to_y(Axis up) {
+  if (up == Axis::y) return Quat::Identity();
+  return Quat(Eigen::AngleAxisd(up == Axis::z ? -0.5 * kPi : 0.5 * kPi,
+                                up == Axis::z ? Vec3::UnitX() : Vec3::UnitZ()));
+}
+
+// The same movement described in other world axes: every frame of the skeleton turns along.
+void change_basis(Motion& motion, const Quat& C) {
+  auto joints = motion.skeleton.joints();
+  for (auto& joint : joints) {
+    joint.offset_parent = C * joint.offset_parent;
+    joint.bone = C * joint.bone;
+    joint.R_joint_axes = C * joint.R_joint_axes;
+  }
+  motion.skeleton = Skeleton(std::move(joints));
+  for (auto& position : motion.root_positions) position = C * position;
+  for (auto& rotation : motion.rotations) rotation = C * rotation * C.conjugate();
+  for (auto& track : motion.offset_tracks)
+    for (auto& offset : track.offset_parent) offset = C * offset;
+}
+
+}  // namespace
+
+MotionFile read_bvh(const std::filesystem::path& path, const ReadOptions& options) {
+  options.validate();
+  TextScanner scanner(path, read_file(path, options.max_bytes), {.punctuation = "{}"});
+  MotionFile file;
+  const auto hierarchy = read_bvh_hierarchy(scanner, options, file.warnings);
+  file.motion.skeleton = skeleton_of(hierarchy);
+  warn_about_renamed(hierarchy, file.motion.skeleton, file.warnings);
+  warn_about_size(file.motion.skeleton, options.bvh_unit_m, hierarchy.joints[0].location,
+                  file.warnings);
+  MotionReader(scanner, hierarchy, options, file).read();
+  if (options.bvh_up != Axis::y) change_basis(file.motion, rotation_to_y(options.bvh_up));
+  return file;
+}
+
+}  // namespace sparse_mocap

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/motion/motion.hpp"
+
+namespace sparse_mocap {
+
+// What a reader accepts at the most, and what a file does not say about itself.
+struct ReadOptions {
+  std::size_t max_bytes = std::size_t{2} << 30;
+  int max_joints = 1024;
+  int max_depth = 256;
+  int max_frames = 3'000'000;
+  std::size_t max_rotations = std::size_t{1} << 27;  // frames * joints: what takes the memory
+  double amc_rate_hz = 120.0;                        // AMC files do not state their rate
+  double bvh_unit_m = 0.01;      // BVH files do not state their unit; the convention is cm
+  Axis bvh_up = Axis::y;         // the file's up axis; the motion read always has y up
+  bool allow_no_frames = false;  // a skeleton without motion is accepted
+
+  // Throws ConfigError naming the option, its value and its range.
+  void validate() const;
+};
+
+// Something a reader accepted although it looks odd.
+struct ReadWarning {
+  FileLocation location;
+  std::string text;
+};
+
+struct MotionFile {
+  Motion motion;
+  std::vector<ReadWarning> warnings;
+};
+
+// Whether the name ends in .bvh or .amc (any case).
+bool is_motion_file(const std::filesystem::path& path);
+
+// Reads .bvh, or .amc with the .asf found beside it (see find_asf). Throws FormatError.
+MotionFile read_motion_file(const std::filesystem::path& path, const ReadOptions& options = {});
+
+}  // namespace sparse_mocap

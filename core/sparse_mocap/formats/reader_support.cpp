@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/formats/reader_support.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <set>
+#include <utility>
+
+namespace sparse_mocap {
+namespace {
+
+constexpr std::size_t kMaxNameBytes = 255;
+
+// The bytes of the UTF-8 character at the start of text, 0 when it is not one.
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  std::size_t length = 0;
+  if (byte(0) < 0x80) length = 1;
+  if (byte(0) >= 0xC2 && byte(0) <= 0xDF) length = 2;
+  if (byte(0) >= 0xE0 && byte(0) <= 0xEF) length = 3;
+  if (byte(0) >= 0xF0 && byte(0) <= 0xF4) length = 4;
+  if (length == 0 || length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  const bool is_overlong =
+      (byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xF0 && byte(1) < 0x90);
+  const bool is_surrogate = byte(0) == 0xED && byte(1) > 0x9F;
+  const bool is_beyond_unicode = byte(0) == 0xF4 && byte(1) > 0x8F;
+  return is_overlong || is_surrogate || is_beyond_unicode ? 0 : length;
+}
+
+std::string escaped_to_utf8(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const auto length = utf8_length(text);
+    if (length > 0) {
+      result += text.substr(0, length);
+    } else {
+      std::array<char, 8> escape{};
+      std::snprintf(escape.data(), escape.size(), "\\x%02x", static_cast<unsigned char>(text[0]));
+      result += escape.data();
+    }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return result;
+}
+
+std::string short_number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+// The longest side of the box around the figure in rest pose: height or span of the arms.
+double rest_size_m(const Skeleton& skeleton) {
+  JointTransforms rest;
+  forward_kinematics(
+      skeleton, Vec3::Zero(),
+      std::vector<Mat3>(static_cast<std::size_t>(skeleton.num_joints()), Mat3::Identity()), rest);
+  Eigen::AlignedBox3d box;
+  for (const auto& point : rest.pivot) box.extend(point);
+  for (const auto& point : rest.end) box.extend(point);
+  return box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
+}
+
+}  // namespace
+
+Quat turned_about(const Quat& q, Axis axis, double angle_rad) {
+  const auto i = static_cast<Eigen::Index>(axis);
+  const Eigen::Index j = i == 2 ? 0 : i + 1;
+  const Eigen::Index k = j == 2 ? 0 : j + 1;
+  const double s = std::sin(0.5 * angle_rad);
+  const double c = std::cos(0.5 * angle_rad);
+  const auto& from = q.coeffs();  // x y z w
+  Quat result;
+  auto& to = result.coeffs();
+  to[3] = c * from[3] - s * from[i];
+  to[i] = c * from[i] + s * from[3];
+  to[j] = c * from[j] + s * from[k];
+  to[k] = c * from[k] - s * from[j];
+  return result;
+}
+
+double length_m(TextScanner& scanner, std::string_view what, double unit_m) {
+  const auto token = scanner.peek();
+  const double length = scanner.number(what) * unit_m;
+  if (std::abs(length) > kMaxLength_m)
+    scanner.fail(token,
+                 in_quotes(token) + " is " + short_number(length) + " m, which cannot be a length",
+                 "check the number and the unit of the file");
+  return length;
+}
+
+Vec3 lengths_m(TextScanner& scanner, std::string_view what, double unit_m) {
+  Vec3 lengths;
+  for (double& length : lengths) length = length_m(scanner, what, unit_m);
+  return lengths;
+}
+
+std::string checked_name(const TextScanner& scanner, std::string_view token,
+                         std::vector<ReadWarning>& warnings) {
+  if (token.size() > kMaxNameBytes)
+    scanner.fail(token, "a name has " + std::to_string(token.size()) + " bytes, at most " +
+                            std::to_string(kMaxNameBytes) + " are accepted");
+  auto name = escaped_to_utf8(token);
+  if (name != token)
+    warnings.push_back(
+        {scanner.location(token), "the name is not UTF-8; read as " + in_quotes(name)});
+  return name;
+}
+
+std::vector<std::string> unique_names(std::vector<std::string> names) {
+  const std::set<std::string> originals(names.begin(), names.end());
+  std::set<std::string> taken;
+  for (auto& name : names) {
+    std::string candidate = name;
+    for (int number = 2;
+         taken.contains(candidate) || (candidate != name && originals.contains(candidate));
+         ++number)
+      candidate = name + "_" + std::to_string(number);
+    taken.insert(candidate);
+    name = std::move(candidate);
+  }
+  return names;
+}
+
+void warn_about_size(const Skeleton& skeleton, double unit_m, const FileLocation& location,
+                     std::vector<ReadWarning>& warnings) {
+  constexpr double kSmallest_m = 0.5;
+  constexpr double kTallest_m = 4.0;
+  constexpr double kUsual_m = 1.7;
+  struct Unit {
+    double metres;
+    const char* name;
+  };
+  constexpr std::array<Unit, 5> kUnits{{{0.001, "mm"},
+                                        {0.01, "cm"},
+                                        {0.0254, "inches"},
+                                        {0.0254 / 0.45, "inches / 0.45"},
+                                        {1.0, "m"}}};
+  const double size = rest_size_m(skeleton);
+  if (size == 0.0 || (size >= kSmallest_m && size <= kTallest_m)) return;
+  const auto misfit = [&](const Unit& unit) {
+    return std::abs(std::log(size / unit_m * unit.metres / kUsual_m));
+  };
+  const auto& best = *std::ranges::min_element(kUnits, {}, misfit);
+  warnings.push_back({location, "the figure measures " + short_number(size) +
+                                    " m; with lengths in " + best.name + " (" +
+                                    short_number(best.metres) + " m a unit) it would be " +
+                                    short_number(size / unit_m * best.metres) + " m"});
+}
+
+int max_frames_of(int num_joints, const ReadOptions& options) {
+  const auto by_memory = options.max_rotations / static_cast<std::size_t>(std::max(1, num_joints));
+  return static_cast<int>(std::min(by_memory, static_cast<std::size_t>(options.max_frames)));
+}
+
+}  // namespace sparse_mocap

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sparse_mocap/base/text_scanner.hpp"
+#include "sparse_mocap/formats/motion_file.hpp"
+
+namespace sparse_mocap {
+
+// What the readers of motion files share.
+
+// A length or position further away than this is a broken file, not a place.
+inline constexpr double kMaxLength_m = 1e5;
+
+// q followed, in its own frame, by a turn about one axis: q * (axis, angle).
+Quat turned_about(const Quat& q, Axis axis, double angle_rad);
+
+// The next token as a length of a file whose unit is unit_m, in metres.
+double length_m(TextScanner& scanner, std::string_view what, double unit_m);
+Vec3 lengths_m(TextScanner& scanner, std::string_view what, double unit_m);
+
+// The name with bytes that are not UTF-8 escaped (recorded as a warning). Throws FormatError when
+// it is longer than 255 bytes.
+std::string checked_name(const TextScanner& scanner, std::string_view token,
+                         std::vector<ReadWarning>& warnings);
+
+// The names with a suffix (_2, _3, ...) at each repetition; distinct names stay as they are.
+std::vector<std::string> unique_names(std::vector<std::string> names);
+
+// Warns when the figure in rest pose is far from human size, and says which unit would make it so.
+void warn_about_size(const Skeleton& skeleton, double unit_m, const FileLocation& location,
+                     std::vector<ReadWarning>& warnings);
+
+// The most frames of num_joints joints that the options let a motion have.
+int max_frames_of(int num_joints, const ReadOptions& options);
+
+}  // namespace sparse_mocap
