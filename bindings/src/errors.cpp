@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <pybind11/gil_safe_call_once.h>
+
+#include "common.hpp"
+#include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/motion/humanoid.hpp"
+
+namespace sparse_mocap::python {
+namespace {
+
+py::object& format_error_class() {
+  static py::gil_safe_call_once_and_store<py::object> storage;
+  return storage
+      .call_once_and_store_result([] {
+        return py::reinterpret_steal<py::object>(PyErr_NewException(
+            "sparse_mocap._core.FormatError", PyExc_ValueError, nullptr));
+      })
+      .get_stored();
+}
+
+void set_format_error(const FormatError& error) {
+  const py::object instance = format_error_class()(error.what());
+  instance.attr("path") = error.location().path.string();
+  instance.attr("line") = error.location().line;
+  instance.attr("column") = error.location().column;
+  PyErr_SetObject(format_error_class().ptr(), instance.ptr());
+}
+
+}  // namespace
+
+void bind_errors(py::module_& m) {
+  py::object& format_error = format_error_class();
+  format_error.attr("path") = "";
+  format_error.attr("line") = 0;
+  format_error.attr("column") = 0;
+  m.attr("FormatError") = format_error;
+  py::register_exception_translator([](std::exception_ptr pointer) {
+    try {
+      if (pointer) std::rethrow_exception(pointer);
+    } catch (const FormatError& error) {
+      set_format_error(error);
+    } catch (const std::filesystem::filesystem_error& error) {
+      errno = error.code().value();
+      PyErr_SetFromErrnoWithFilename(PyExc_OSError, error.path1().string().c_str());
+    }
+  });
+  py::register_exception<ConfigError>(m, "ConfigError", PyExc_ValueError);
+  py::register_exception<MappingError>(m, "MappingError", PyExc_ValueError);
+  py::register_exception<Cancelled>(m, "Cancelled");
+}
+
+}  // namespace sparse_mocap::python

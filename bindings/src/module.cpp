@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common.hpp"
+#include "sparse_mocap/base/conventions.hpp"
+
+PYBIND11_MODULE(_core, m) {
+  using namespace sparse_mocap;
+  m.doc() = "The compiled core of Sparse Mocap.";
+  m.attr("__version__") = SPARSE_MOCAP_VERSION;
+  m.attr("GRAVITY_MPS2") = kGravity_mps2;
+  python::bind_errors(m);
+  python::bind_motion(m);
+  python::bind_sensors(m);
+  python::bind_database(m);
+  python::bind_reconstruction(m);
+}

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common.hpp"
+#include "sparse_mocap/formats/bvh.hpp"
+#include "sparse_mocap/formats/motion_file.hpp"
+#include "sparse_mocap/motion/heading.hpp"
+#include "sparse_mocap/motion/humanoid.hpp"
+
+namespace sparse_mocap::python {
+namespace {
+
+py::array_t<double> vectors(const Skeleton& skeleton, Vec3 Joint::*member) {
+  auto out = new_array({skeleton.num_joints(), 3});
+  auto rows = out.mutable_unchecked<2>();
+  for (int j = 0; j < skeleton.num_joints(); ++j)
+    for (int k = 0; k < 3; ++k) rows(j, k) = (skeleton.joint(j).*member)[k];
+  return out;
+}
+
+py::array_t<double> root_positions(const Motion& motion) {
+  auto out = new_array({motion.num_frames(), 3});
+  auto rows = out.mutable_unchecked<2>();
+  for (int t = 0; t < motion.num_frames(); ++t)
+    for (int k = 0; k < 3; ++k) rows(t, k) = motion.root_positions[static_cast<std::size_t>(t)][k];
+  return out;
+}
+
+py::array_t<double> rotations(const Motion& motion) {
+  auto out = new_array({motion.num_frames(), motion.skeleton.num_joints(), 4});
+  auto rows = out.mutable_unchecked<3>();
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    for (int j = 0; j < motion.skeleton.num_joints(); ++j) {
+      const Quat& q = motion.rotation(t, j);
+      rows(t, j, 0) = q.w();
+      rows(t, j, 1) = q.x();
+      rows(t, j, 2) = q.y();
+      rows(t, j, 3) = q.z();
+    }
+  }
+  return out;
+}
+
+Motion make_motion(const Skeleton& skeleton, double frame_time_s, const Doubles& positions,
+                   const Doubles& joint_rotations) {
+  const py::ssize_t frames = positions.ndim() > 0 ? positions.shape(0) : 0;
+  require_shape(positions, {-1, 3}, "root_positions");
+  require_shape(joint_rotations, {frames, skeleton.num_joints(), 4}, "rotations");
+  if (!(frame_time_s > 0.0)) throw py::value_error("frame_time_s must be positive");
+  Motion motion;
+  motion.skeleton = skeleton;
+  motion.frame_time_s = frame_time_s;
+  const auto p = positions.unchecked<2>();
+  const auto q = joint_rotations.unchecked<3>();
+  for (py::ssize_t t = 0; t < frames; ++t) {
+    motion.root_positions.emplace_back(p(t, 0), p(t, 1), p(t, 2));
+    for (py::ssize_t j = 0; j < q.shape(1); ++j)
+      motion.rotations.push_back(
+          Quat(q(t, j, 0), q(t, j, 1), q(t, j, 2), q(t, j, 3)).normalized());
+  }
+  return motion;
+}
+
+PositionFrame frame_named(const std::string& name) {
+  if (name == "heading") return PositionFrame::heading;
+  if (name == "root") return PositionFrame::root;
+  if (name == "world") return PositionFrame::world;
+  throw py::value_error("frame must be heading, root or world, got '" + name + "'");
+}
+
+py::array_t<double> positions_of(const Motion& motion, const std::string& frame_name) {
+  const PositionFrame frame = frame_named(frame_name);
+  if (frame == PositionFrame::heading && motion.skeleton.num_joints() != kNumStandardJoints)
+    throw py::value_error("the heading frame needs a motion on the standard skeleton");
+  Eigen::MatrixXd columns;
+  {
+    const py::gil_scoped_release release;
+    columns = joint_positions(motion, frame);
+  }
+  // Column-major 3J x T is row-major T x J x 3.
+  auto out = new_array({motion.num_frames(), motion.skeleton.num_joints(), 3});
+  std::copy(columns.data(), columns.data() + columns.size(), out.mutable_data());
+  return out;
+}
+
+std::pair<Motion, std::vector<std::string>> read_motion(const std::filesystem::path& path,
+                                                        double amc_rate_hz) {
+  ReadOptions options;
+  options.amc_rate_hz = amc_rate_hz;
+  MotionFile file = read_motion_file(path, options);
+  std::vector<std::string> warnings;
+  for (const auto& warning : file.warnings)
+    warnings.emplace_back(FormatError(warning.location, warning.text).what());
+  return {std::move(file.motion), std::move(warnings)};
+}
+
+std::pair<Motion, std::vector<std::string>> standard_motion(
+    const Motion& motion, const std::optional<Skeleton>& skeleton) {
+  const HumanoidMapping mapping = map_humanoid(motion.skeleton);
+  std::vector<std::string> warnings = mapping.warnings;
+  const Skeleton target = skeleton ? *skeleton : make_standard_skeleton(mapping.bones);
+  Motion out = to_standard(motion, mapping, target, &warnings);
+  return {std::move(out), std::move(warnings)};
+}
+
+}  // namespace
+
+void bind_motion(py::module_& m) {
+  using release = py::call_guard<py::gil_scoped_release>;
+  py::class_<Skeleton>(m, "Skeleton")
+      .def_property_readonly("names",
+                             [](const Skeleton& s) {
+                               std::vector<std::string> names;
+                               for (const auto& joint : s.joints()) names.push_back(joint.name);
+                               return names;
+                             })
+      .def_property_readonly("parents",
+                             [](const Skeleton& s) {
+                               std::vector<int> parents;
+                               for (const auto& joint : s.joints())
+                                 parents.push_back(joint.parent);
+                               return parents;
+                             })
+      .def_property_readonly("offsets",
+                             [](const Skeleton& s) { return vectors(s, &Joint::offset_parent); })
+      .def_property_readonly("bones", [](const Skeleton& s) { return vectors(s, &Joint::bone); });
+
+  py::class_<Motion>(m, "Motion")
+      .def(py::init(&make_motion), py::arg("skeleton"), py::arg("frame_time_s"),
+           py::arg("root_positions"), py::arg("rotations"))
+      .def_property_readonly("skeleton", [](const Motion& motion) { return motion.skeleton; })
+      .def_readonly("frame_time_s", &Motion::frame_time_s)
+      .def_property_readonly("num_frames", &Motion::num_frames)
+      .def_property_readonly("root_positions", &root_positions)
+      .def_property_readonly("rotations", &rotations)
+      .def("joint_positions", &positions_of, py::arg("frame") = "world")
+      .def("resampled", &resampled, py::arg("rate_hz"), release())
+      .def("trimmed", &trimmed, py::arg("begin"), py::arg("end"))
+      .def("reversed", &reversed)
+      .def("mirrored", [](const Motion& motion) {
+        return mirrored(motion, left_right_pairs(motion.skeleton));
+      });
+
+  m.def("read_motion", &read_motion, py::arg("path"), py::kw_only(),
+        py::arg("amc_rate_hz") = 120.0, release());
+  m.def("write_bvh", &write_bvh, py::arg("path"), py::arg("motion"), release());
+  m.def("standard_motion", &standard_motion, py::arg("motion"), py::arg("skeleton") = py::none(),
+        release());
+}
+
+}  // namespace sparse_mocap::python

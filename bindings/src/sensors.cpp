@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common.hpp"
+#include "sparse_mocap/sensors/filter.hpp"
+#include "sparse_mocap/sensors/virtual_sensor.hpp"
+
+namespace sparse_mocap::python {
+namespace {
+
+std::vector<double> sample_times(const Motion& motion, double rate_hz) {
+  const double last_s = motion.frame_time_s * (motion.num_frames() - 1);
+  std::vector<double> times;
+  for (int t = 0; t / rate_hz <= last_s + 1e-9; ++t) times.push_back(t / rate_hz);
+  return times;
+}
+
+// Samples between the motion's frames, without further filtering.
+Eigen::MatrixXd sampled(const Eigen::MatrixXd& values, const Motion& motion,
+                        const std::vector<double>& wanted_s) {
+  std::vector<double> times;
+  for (int t = 0; t < motion.num_frames(); ++t) times.push_back(t * motion.frame_time_s);
+  return filtered_at(times, values, wanted_s, GaussianFilter{0.0});
+}
+
+void copy_orientation(const std::vector<Mat3>& R_world_sensor, const Motion& motion,
+                      const std::vector<double>& wanted_s, double* out) {
+  const auto last = R_world_sensor.size() - 1;
+  for (const double at_s : wanted_s) {
+    const double position = at_s / motion.frame_time_s;
+    const auto frame = std::min(static_cast<std::size_t>(position), last);
+    const Quat q = Quat(R_world_sensor[frame])
+                       .slerp(std::min(position - static_cast<double>(frame), 1.0),
+                              Quat(R_world_sensor[std::min(frame + 1, last)]));
+    for (const double value : {q.w(), q.x(), q.y(), q.z()}) *out++ = value;
+  }
+}
+
+py::dict simulate(const Motion& motion, const std::vector<std::string>& site_names, double rate_hz,
+                  const std::optional<std::vector<double>>& places) {
+  if (!(rate_hz > 0.0)) throw py::value_error("rate_hz must be positive");
+  if (motion.num_frames() < 3) throw py::value_error("the motion has fewer than 3 frames");
+  const auto sensors = sensors_from(site_names, places);
+  std::vector<Site> sites;
+  for (const auto& sensor : sensors)
+    sites.push_back(all_sites()[static_cast<std::size_t>(sensor.site)]);
+  std::vector<VirtualReadings> readings;
+  {
+    const py::gil_scoped_release release;
+    readings = virtual_readings(motion, sites);
+  }
+  const auto times = sample_times(motion, rate_hz);
+  const auto n = static_cast<py::ssize_t>(times.size());
+  const auto s = static_cast<py::ssize_t>(sites.size());
+  py::array_t<double> time_s(n);
+  std::copy(times.begin(), times.end(), time_s.mutable_data());
+  auto force = new_array({s, n, 3}), turn = new_array({s, n, 3}), orientation = new_array({s, n, 4});
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const auto at = static_cast<py::ssize_t>(i);
+    const Eigen::MatrixXd f =
+        sampled(readings[i].specific_force(sensors[i].place), motion, times);
+    const Eigen::MatrixXd w = sampled(readings[i].angular_velocity, motion, times);
+    std::copy(f.data(), f.data() + f.size(), force.mutable_data(at, 0, 0));
+    std::copy(w.data(), w.data() + w.size(), turn.mutable_data(at, 0, 0));
+    copy_orientation(readings[i].R_world_sensor, motion, times,
+                     orientation.mutable_data(at, 0, 0));
+  }
+  py::dict out;
+  out["time_s"] = time_s;
+  out["specific_force"] = force;
+  out["angular_velocity"] = turn;
+  out["orientation"] = orientation;
+  return out;
+}
+
+py::array_t<double> filtered(const Doubles& times_s, const Doubles& values,
+                             const Doubles& wanted_s) {
+  require_shape(times_s, {-1}, "times_s");
+  require_shape(values, {times_s.shape(0), -1}, "values");
+  require_shape(wanted_s, {-1}, "wanted_s");
+  if (times_s.shape(0) == 0) throw py::value_error("times_s is empty");
+  // Row-major T x C is column-major C x T.
+  const Eigen::MatrixXd columns =
+      Eigen::Map<const Eigen::MatrixXd>(values.data(), values.shape(1), values.shape(0));
+  const auto span = [](const Doubles& array) {
+    return std::span<const double>(array.data(), static_cast<std::size_t>(array.size()));
+  };
+  const Eigen::MatrixXd result =
+      filtered_at(span(times_s), columns, span(wanted_s), kReadingFilter);
+  auto out = new_array({result.cols(), result.rows()});
+  std::copy(result.data(), result.data() + result.size(), out.mutable_data());
+  return out;
+}
+
+}  // namespace
+
+void bind_sensors(py::module_& m) {
+  m.attr("FILTER_REACH_S") = kReadingFilter.reach_s();
+  m.def("site_names", [] {
+    std::vector<std::string> names;
+    for (const auto& site : all_sites()) names.emplace_back(site.name);
+    return names;
+  });
+  m.def("simulate", &simulate, py::arg("motion"), py::arg("sites"), py::arg("rate_hz"),
+        py::arg("places") = py::none());
+  m.def("filtered_at", &filtered, py::arg("times_s"), py::arg("values"), py::arg("wanted_s"));
+}
+
+}  // namespace sparse_mocap::python
