@@ -153,7 +153,7 @@ AcclaimSkeleton read_asf(const std::filesystem::path& path, const ReadOptions& o
   result.radians_per_angle = sections.is_in_degrees ? kRadiansPerDegree : 1.0;
   result.root_position = sections.root.position * result.metres_per_unit;
   build_skeleton(scanner, sections, options, result);
-  warn_about_size(result.skeleton, result.metres_per_unit, {path}, result.warnings);
+  warn_about_size(rest_pose(result.skeleton), result.metres_per_unit, {path}, result.warnings);
   return result;
 }
 

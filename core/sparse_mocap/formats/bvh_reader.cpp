@@ -261,9 +261,11 @@ MotionFile read_bvh(const std::filesystem::path& path, const ReadOptions& option
   const auto hierarchy = read_bvh_hierarchy(scanner, options, file.warnings);
   file.motion.skeleton = skeleton_of(hierarchy);
   warn_about_renamed(hierarchy, file.motion.skeleton, file.warnings);
-  warn_about_size(file.motion.skeleton, options.bvh_unit_m, hierarchy.joints[0].location,
-                  file.warnings);
   MotionReader(scanner, hierarchy, options, file).read();
+  // Many exporters have an odd rest pose, but the first frame shows a figure.
+  const auto& motion = file.motion;
+  warn_about_size(motion.num_frames() > 0 ? motion.transforms(0) : rest_pose(motion.skeleton),
+                  options.bvh_unit_m, hierarchy.joints[0].location, file.warnings);
   if (options.bvh_up != Axis::y) change_basis(file.motion, rotation_to_y(options.bvh_up));
   return file;
 }

@@ -53,15 +53,11 @@ std::string short_number(double value) {
   return text.data();
 }
 
-// The longest side of the box around the figure in rest pose: height or span of the arms.
-double rest_size_m(const Skeleton& skeleton) {
-  JointTransforms rest;
-  forward_kinematics(
-      skeleton, Vec3::Zero(),
-      std::vector<Mat3>(static_cast<std::size_t>(skeleton.num_joints()), Mat3::Identity()), rest);
+// The longest side of the box around the figure: height or span of the arms.
+double size_m(const JointTransforms& pose) {
   Eigen::AlignedBox3d box;
-  for (const auto& point : rest.pivot) box.extend(point);
-  for (const auto& point : rest.end) box.extend(point);
+  for (const auto& point : pose.pivot) box.extend(point);
+  for (const auto& point : pose.end) box.extend(point);
   return box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
 }
 
@@ -126,30 +122,41 @@ std::vector<std::string> unique_names(std::vector<std::string> names) {
   return names;
 }
 
-void warn_about_size(const Skeleton& skeleton, double unit_m, const FileLocation& location,
+JointTransforms rest_pose(const Skeleton& skeleton) {
+  JointTransforms rest;
+  forward_kinematics(
+      skeleton, Vec3::Zero(),
+      std::vector<Mat3>(static_cast<std::size_t>(skeleton.num_joints()), Mat3::Identity()), rest);
+  return rest;
+}
+
+void warn_about_size(const JointTransforms& pose, double unit_m, const FileLocation& location,
                      std::vector<ReadWarning>& warnings) {
   constexpr double kSmallest_m = 0.5;
-  constexpr double kTallest_m = 4.0;
+  constexpr double kTallest_m = 3.0;
   constexpr double kUsual_m = 1.7;
   struct Unit {
     double metres;
     const char* name;
   };
-  constexpr std::array<Unit, 5> kUnits{{{0.001, "mm"},
+  constexpr std::array<Unit, 6> kUnits{{{0.001, "mm"},
                                         {0.01, "cm"},
                                         {0.0254, "inches"},
                                         {0.0254 / 0.45, "inches / 0.45"},
+                                        {0.1, "dm"},
                                         {1.0, "m"}}};
-  const double size = rest_size_m(skeleton);
+  const double size = size_m(pose);
   if (size == 0.0 || (size >= kSmallest_m && size <= kTallest_m)) return;
+  const auto size_in = [&](const Unit& unit) { return size / unit_m * unit.metres; };
   const auto misfit = [&](const Unit& unit) {
-    return std::abs(std::log(size / unit_m * unit.metres / kUsual_m));
+    return std::abs(std::log(size_in(unit) / kUsual_m));
   };
   const auto& best = *std::ranges::min_element(kUnits, {}, misfit);
+  if (std::abs(best.metres / unit_m - 1.0) < 0.01) return;
   warnings.push_back({location, "the figure measures " + short_number(size) +
                                     " m; with lengths in " + best.name + " (" +
                                     short_number(best.metres) + " m a unit) it would be " +
-                                    short_number(size / unit_m * best.metres) + " m"});
+                                    short_number(size_in(best)) + " m"});
 }
 
 int max_frames_of(int num_joints, const ReadOptions& options) {
