@@ -99,11 +99,12 @@ Energy::Model Energy::majorised(const Eigen::VectorXd& angles, const Eigen::Matr
     }
     const Eigen::MatrixXd jacobian = observed_jacobian(term, positions_by_basis, basis);
     model.gradient.noalias() += jacobian.transpose() * sum.pull;
-    model.hessian.noalias() += sum.stiffness * jacobian.transpose() * jacobian;
+    model.hessian.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose(), sum.stiffness);
   }
   if (stiffness_of_all_positions != 0.0)
-    model.hessian.noalias() +=
-        stiffness_of_all_positions * positions_by_basis.transpose() * positions_by_basis;
+    model.hessian.selfadjointView<Eigen::Lower>().rankUpdate(positions_by_basis.transpose(),
+                                                             stiffness_of_all_positions);
+  model.hessian.triangularView<Eigen::StrictlyUpper>() = model.hessian.transpose();
   return model;
 }
 
