@@ -175,11 +175,11 @@ std::filesystem::path find_asf(const std::filesystem::path& amc_path) {
     stem.resize(cut == std::string::npos ? 0 : cut);
   }
   if (asf_by_stem.size() == 1) return asf_by_stem.begin()->second;
-  throw FormatError({amc_path},
-                    (asf_by_stem.empty() ? "there is no .asf in "
-                                         : "none of the " + std::to_string(asf_by_stem.size()) +
-                                               " .asf belongs to it in ") +
-                        folder.string() + "; looked for " + wanted,
+  const std::string problem = asf_by_stem.empty()
+                                  ? "there is no .asf in " + folder.string()
+                                  : "none of the " + std::to_string(asf_by_stem.size()) +
+                                        " .asf in " + folder.string() + " belongs to it";
+  throw FormatError({amc_path}, problem + "; looked for " + wanted,
                     "an .amc needs the .asf of its actor beside it");
 }
 

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "sparse_mocap/formats/motion_file.hpp"
+
+namespace sparse_mocap::testing {
+
+// A folder that goes away with the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    static std::atomic<int> counter{0};
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    path_ = std::filesystem::temp_directory_path() /
+            ("sparse_mocap_" + std::string(test->test_suite_name()) + "_" + test->name() + "_" +
+             std::to_string(std::hash<std::string>{}(std::filesystem::current_path().string())) +
+             "_" + std::to_string(counter++));
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  std::filesystem::path path() const { return path_; }
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// What the call complains about: "line: message", the message without the path; "" if it does not.
+template <typename Call>
+std::string error_of(const Call& call) {
+  try {
+    call();
+  } catch (const FormatError& error) {
+    const std::string what = error.what();
+    const auto path = error.location().path.string();
+    EXPECT_TRUE(what.starts_with(path)) << what;
+    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+    return std::to_string(error.location().line) + ": " + what.substr(path.size());
+  }
+  return "";
+}
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+inline bool has_warning(const MotionFile& file, const std::string& part) {
+  for (const auto& warning : file.warnings)
+    if (contains(warning.text, part)) return true;
+  return false;
+}
+
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+// The real recordings that lie beside the repository; empty when they are not there.
+inline std::filesystem::path real_data(const std::string& name) {
+  const char* variable = std::getenv("SPARSE_MOCAP_DATA");
+  const std::filesystem::path folder =
+      variable != nullptr ? std::filesystem::path(variable)
+                          : std::filesystem::path(SPARSE_MOCAP_SOURCE_DIR) / "../shared/data";
+  const auto path = folder / name;
+  return std::filesystem::exists(path) ? path : std::filesystem::path();
+}
+
+#define SKIP_WITHOUT_REAL_DATA(name)                    \
+  if (::sparse_mocap::testing::real_data(name).empty()) \
+  GTEST_SKIP() << "no " << name << " in ../shared/data; set SPARSE_MOCAP_DATA to its folder"
+
+}  // namespace sparse_mocap::testing

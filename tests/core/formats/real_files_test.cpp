@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Recordings of the world; they are not in the repository, see format_test_support.hpp.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "formats/format_test_support.hpp"
+#include "sparse_mocap/formats/bvh.hpp"
+
+namespace sparse_mocap {
+namespace {
+
+using testing::real_data;
+using testing::TemporaryFolder;
+
+// Reads every motion file below a folder and checks what must hold of any motion.
+int read_all(const std::filesystem::path& folder) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (!is_motion_file(entry.path())) continue;
+    MotionFile file;
+    EXPECT_NO_THROW(file = read_motion_file(entry.path())) << entry.path();
+    const auto& motion = file.motion;
+    EXPECT_GT(motion.num_frames(), 0) << entry.path();
+    EXPECT_EQ(motion.rotations.size(),
+              motion.skeleton.joints().size() * motion.root_positions.size());
+    for (const auto& track : motion.offset_tracks)
+      EXPECT_EQ(track.offset_parent.size(), motion.root_positions.size()) << entry.path();
+    const auto is_unit = [](const Quat& q) { return std::abs(q.norm() - 1.0) < 1e-9; };
+    EXPECT_TRUE(std::ranges::all_of(motion.rotations, is_unit)) << entry.path();
+    ++count;
+  }
+  return count;
+}
+
+double round_trip_error_m(const std::filesystem::path& path) {
+  const TemporaryFolder folder;
+  const auto motion = read_motion_file(path).motion;
+  write_bvh(folder / "out.bvh", motion);
+  const auto again = read_bvh(folder / "out.bvh").motion;
+  EXPECT_EQ(again.num_frames(), motion.num_frames());
+  double worst = 0.0;
+  for (int frame = 0; frame < motion.num_frames(); frame += 7) {
+    const auto expected = motion.transforms(frame);
+    const auto actual = again.transforms(frame);
+    for (int j = 0; j < motion.skeleton.num_joints(); ++j) {
+      const int k = again.skeleton.find(motion.skeleton.joint(j).name);
+      if (k < 0) return 1e9;
+      worst = std::max(worst, (actual.pivot[static_cast<std::size_t>(k)] -
+                               expected.pivot[static_cast<std::size_t>(j)])
+                                  .norm());
+    }
+  }
+  return worst;
+}
+
+TEST(RealFiles, EveryHdm05ClipIsRead) {
+  SKIP_WITHOUT_REAL_DATA("hdm05");
+  EXPECT_GT(read_all(real_data("hdm05")), 200);
+}
+
+TEST(RealFiles, EveryCmuTrialIsRead) {
+  SKIP_WITHOUT_REAL_DATA("cmu");
+  EXPECT_GT(read_all(real_data("cmu")), 100);
+}
+
+TEST(RealFiles, FilesOfManyExportersAreRead) {
+  SKIP_WITHOUT_REAL_DATA("bvh_exporters");
+  EXPECT_GT(read_all(real_data("bvh_exporters")), 60);
+}
+
+TEST(RealFiles, AnotherAcclaimExporterIsRead) {
+  SKIP_WITHOUT_REAL_DATA("acclaim_variants");
+  EXPECT_EQ(read_all(real_data("acclaim_variants")), 1);
+}
+
+// The CMU trials exist in both formats: a T-pose and then the same rotations. The conversion adds
+// dummy joints without length and shortens the thorax and wrists, so the joints below are compared.
+TEST(RealFiles, CmuAmcAndBvhAgree) {
+  SKIP_WITHOUT_REAL_DATA("cmu/asf_amc/02_01.amc");
+  SKIP_WITHOUT_REAL_DATA("cmu/bvh/02_01.bvh");
+  const std::map<std::string, std::string> same_pivot{
+      {"root", "Hips"},           {"lfemur", "LeftUpLeg"},  {"ltibia", "LeftLeg"},
+      {"lfoot", "LeftFoot"},      {"ltoes", "LeftToeBase"}, {"rfemur", "RightUpLeg"},
+      {"rtibia", "RightLeg"},     {"rfoot", "RightFoot"},   {"rtoes", "RightToeBase"},
+      {"lowerback", "LowerBack"}, {"upperback", "Spine"},   {"thorax", "Spine1"}};
+  for (const std::string trial : {"02_01", "02_02", "02_05"}) {
+    const auto amc = read_motion_file(real_data("cmu/asf_amc/" + trial + ".amc")).motion;
+    const auto bvh =
+        read_bvh(real_data("cmu/bvh/" + trial + ".bvh"), {.bvh_unit_m = 0.0254 / 0.45}).motion;
+    ASSERT_EQ(bvh.num_frames(), amc.num_frames() + 1) << "a leading T-pose";
+    double worst = 0.0;
+    for (int frame = 0; frame < amc.num_frames(); frame += 5) {
+      const auto from = amc.transforms(frame);
+      const auto to = bvh.transforms(frame + 1);
+      for (const auto& [bone, joint] : same_pivot) {
+        const auto a = static_cast<std::size_t>(amc.skeleton.find(bone));
+        const auto b = static_cast<std::size_t>(bvh.skeleton.find(joint));
+        worst = std::max(worst, (from.pivot[a] - to.pivot[b]).norm());
+      }
+    }
+    EXPECT_LT(worst, 2e-4) << trial << " (the BVH has four decimals)";
+  }
+}
+
+TEST(RealFiles, RoundTripsThroughBvh) {
+  SKIP_WITHOUT_REAL_DATA("hdm05/HDM_bd.asf");
+  SKIP_WITHOUT_REAL_DATA("cmu/bvh/02_01.bvh");
+  SKIP_WITHOUT_REAL_DATA("bvh_exporters/makehuman/benchmark.bvh");
+  EXPECT_LT(round_trip_error_m(real_data("hdm05/HDM_bd_lieDownFloor_001_120.amc")), 1e-6);
+  EXPECT_LT(round_trip_error_m(real_data("cmu/asf_amc/02_01.amc")), 1e-6);
+  EXPECT_LT(round_trip_error_m(real_data("cmu/bvh/02_01.bvh")), 1e-6);
+  EXPECT_LT(round_trip_error_m(real_data("bvh_exporters/makehuman/benchmark.bvh")), 1e-6)
+      << "163 joints that move";
+}
+
+}  // namespace
+}  // namespace sparse_mocap
