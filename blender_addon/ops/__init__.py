@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The animator's steps as operators, one file a step."""
+
+import atexit
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..session import job
+from . import database, job_operator, reconstruct, take
+
+CLASSES = (*job_operator.CLASSES, *database.CLASSES, *take.CLASSES, *reconstruct.CLASSES)
+
+
+@persistent
+def _before_load(*_: object) -> None:
+    """Another file is about to be opened: what runs for this one ends."""
+    job.cancel_current()
+
+
+def register() -> None:
+    """Make the operators known."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.app.handlers.load_pre.append(_before_load)
+    atexit.register(job.cancel_current)
+
+
+def unregister() -> None:
+    """Stop what runs and take the operators away."""
+    job.cancel_current()
+    atexit.unregister(job.cancel_current)
+    bpy.app.handlers.load_pre.remove(_before_load)
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operators that do long work: modal with progress and Esc in the window, blocking for scripts."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import Any
+
+from bpy.types import Context, Event, Operator
+
+from ..scene import compat
+from ..scene.settings import settings_of
+from ..session import job as jobs
+from ..session.errors import InputError, one_line
+from ..session.job import Cancelled, Job
+
+_TICK_S = 0.1
+
+
+class JobOperator:
+    """Mix-in: prepare() says what to do, apply() puts the result into Blender.
+
+    Between the two nothing of Blender's is held: an undo or another file may come meanwhile.
+    """
+
+    _job: Job | None = None
+    _timer: Any = None
+
+    def prepare(self, context: Context) -> Job:
+        """The job. Raises InputError or what a file is at fault for."""
+        raise NotImplementedError
+
+    def apply(self, context: Context, result: Any) -> str:
+        """Change Blender's data, whole or not at all, and return one line that says so."""
+        raise NotImplementedError
+
+    def given(self, context: Context, name: str) -> Any:
+        """The operator's own property if it was set, else the scene's setting of that name."""
+        owner = self if self.properties.is_property_set(name) else settings_of(context.scene)
+        return getattr(owner, name)
+
+    def execute(self, context: Context) -> set[str]:
+        """Do it all now."""
+        manager = context.window_manager
+        manager.progress_begin(0, 100)
+        try:
+            _refuse_while_rendering()
+            job = self.prepare(context)
+            result = job.run(lambda: manager.progress_update(int(100 * job.fraction)))
+            return self._finished(context, result)
+        except Exception as error:
+            return self._failed(error)
+        finally:
+            manager.progress_end()
+
+    def invoke(self, context: Context, event: Event) -> set[str]:
+        """Do it on a worker thread while Blender stays usable."""
+        try:
+            _refuse_while_rendering()
+            self._job = self.prepare(context)
+            self._job.start()
+        except Exception as error:
+            return self._failed(error)
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(_TICK_S, window=context.window)
+        if not compat.HAS_PROGRESS_BAR:
+            manager.progress_begin(0, 100)
+        manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: Context, event: Event) -> set[str]:
+        """Show the progress; when the work is done, put it into the scene."""
+        job = self._job
+        if job is None:
+            return {"CANCELLED"}
+        if event.type == "ESC" and event.value == "PRESS" and job.is_running:
+            job.cancel()
+            return {"RUNNING_MODAL"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        compat.redraw_views(context)
+        if not compat.HAS_PROGRESS_BAR:
+            context.window_manager.progress_update(int(100 * job.fraction))
+        if job.is_running or compat.is_busy(context, self.bl_idname):
+            return {"PASS_THROUGH"}
+        self._end(context)
+        try:
+            return self._finished(context, job.result())
+        except Exception as error:
+            return self._failed(error)
+
+    def cancel(self, context: Context) -> None:
+        """Blender ends the operator: its window closes or another file is opened."""
+        if self._job is not None:
+            self._job.cancel()
+        self._end(context)
+
+    def _end(self, context: Context) -> None:
+        self._job = None
+        timer, self._timer = self._timer, None
+        with suppress(ReferenceError, AttributeError):  # the window may be gone
+            manager = context.window_manager
+            manager.event_timer_remove(timer)
+            if not compat.HAS_PROGRESS_BAR:
+                manager.progress_end()
+
+    def _finished(self, context: Context, result: Any) -> set[str]:
+        self.report({"INFO"}, self.apply(context, result))
+        return {"FINISHED"}
+
+    def _failed(self, error: Exception) -> set[str]:
+        if isinstance(error, Cancelled):
+            self.report({"INFO"}, "Cancelled")
+        else:
+            self.report({"ERROR"}, one_line(error))
+        return {"CANCELLED"}
+
+
+class SPARSEMOCAP_OT_cancel(Operator):
+    """Stop what is at work; nothing of it is kept."""
+
+    bl_idname = "sparse_mocap.cancel"
+    bl_label = "Cancel"
+    bl_description = "Stop what is at work; nothing of it is kept"
+    bl_options = {"INTERNAL"}
+
+    def execute(self, context: Context) -> set[str]:
+        """Ask the job to stop; its own operator tells the rest."""
+        job = jobs.current()
+        if job is None:
+            return {"CANCELLED"}
+        job.cancel()
+        return {"FINISHED"}
+
+
+def _refuse_while_rendering() -> None:
+    if compat.is_rendering():
+        raise InputError("A render is at work: wait for its end")
+
+
+CLASSES = (SPARSEMOCAP_OT_cancel,)

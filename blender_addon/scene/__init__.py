@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Everything that makes or reads Blender's data, and every difference between its versions."""
+
+
+def register() -> None:
+    """Give scenes their settings."""
+    from . import settings
+
+    settings.register()
+
+
+def unregister() -> None:
+    """Take the settings away."""
+    from . import settings
+
+    settings.unregister()

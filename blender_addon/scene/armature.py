@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A skeleton of the core as an armature: one bone a joint, head at its pivot, tail at its end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy.types import Armature, Context, Object, Scene
+from mathutils import Vector
+
+from ..session.errors import InputError
+from .axes import Floats, rest_pivots_and_ends, to_blender
+
+MARK = "sparse_mocap"  # custom property of armatures that this add-on made
+NAME = "Sparse Mocap"
+
+_ROOT_LENGTH_M = 0.1
+_SHORTEST_BONE_M = 0.005  # Blender drops bones without length
+_LEAF_LENGTH_M = 0.05
+_FIT_TOLERANCE_M = 1e-3
+_FRONT = Vector((0.0, -1.0, 0.0))
+_UP = np.array([0.0, 1.0, 0.0])
+
+
+@dataclass(frozen=True)
+class RestBones:
+    """(J, 3) heads and tails in the core's axes, metres, the feet on the ground."""
+
+    names: list[str]
+    parents: list[int]
+    heads: Floats
+    tails: Floats
+
+
+def rest_bones(skeleton: Any) -> RestBones:
+    """The rest pose of a skeleton (sparse_mocap.Skeleton)."""
+    parents, names = list(skeleton.parents), list(skeleton.names)
+    pivots, ends = rest_pivots_and_ends(parents, skeleton.offsets, skeleton.bones)
+    tails = np.array([_tail(joint, parents, pivots, ends) for joint in range(len(parents))])
+    lift = -min(pivots[:, 1].min(), ends[:, 1].min()) * _UP
+    return RestBones(names, parents, pivots + lift, tails + lift)
+
+
+def new_armature(context: Context, skeleton: Any, name: str = NAME) -> Object:
+    """A new armature of the skeleton in the scene, active and alone selected.
+
+    Raises InputError when the scene cannot take one; nothing is left behind then.
+    """
+    _leave_mode(context)
+    data = bpy.data.armatures.new(name)
+    armature = bpy.data.objects.new(name, data)
+    try:
+        _link(context, armature)
+        select_only(context, armature)
+        bpy.ops.object.mode_set(mode="EDIT")
+        try:
+            _add_bones(data, rest_bones(skeleton), units_per_metre(context.scene))
+        finally:
+            bpy.ops.object.mode_set(mode="OBJECT")
+    except Exception:
+        bpy.data.objects.remove(armature)
+        bpy.data.armatures.remove(data)
+        raise
+    for bone in armature.pose.bones:
+        bone.rotation_mode = "QUATERNION"
+    data[MARK] = ",".join(skeleton.names)
+    armature.show_in_front = True
+    return armature
+
+
+def units_per_metre(scene: Scene) -> float:
+    """How long a metre is in the scene."""
+    settings = scene.unit_settings
+    return 1.0 if settings.system == "NONE" else 1.0 / settings.scale_length
+
+
+def units_per_metre_of(armature: Object, skeleton: Any) -> float:
+    """How long a metre is in the armature. Raises InputError when it is not of that skeleton."""
+    bones = rest_bones(skeleton)
+    missing = [name for name in bones.names if name not in armature.data.bones]
+    if missing:
+        raise InputError(f'"{armature.name}" has no bone {missing[0]}: reconstruct a new armature')
+    rest = [armature.data.bones[name] for name in bones.names]
+    points = np.array([bone.head_local for bone in rest] + [bone.tail_local for bone in rest])
+    theirs = points - points[0]
+    ours = to_blender(np.concatenate([bones.heads, bones.tails]) - bones.heads[0])
+    scale = float(np.linalg.norm(theirs) / np.linalg.norm(ours))
+    if scale == 0.0 or np.abs(theirs / scale - ours).max() > _FIT_TOLERANCE_M:
+        raise InputError(
+            f'"{armature.name}" has other proportions than this motion database: '
+            "reconstruct a new armature"
+        )
+    return scale
+
+
+def rest_orientation(armature: Object, bone: str) -> Floats:
+    """(3, 3) the bone's rest orientation in the armature."""
+    return np.array(armature.data.bones[bone].matrix_local.to_3x3())
+
+
+def is_ours(obj: Object | None) -> bool:
+    """Whether the object is an armature that this add-on made."""
+    return obj is not None and obj.type == "ARMATURE" and MARK in obj.data
+
+
+def reusable_armature(context: Context) -> Object:
+    """The active armature if this add-on made it, else the scene's only one. Raises InputError."""
+    candidates = [obj for obj in context.view_layer.objects if is_ours(obj)]
+    active = context.view_layer.objects.active
+    if active in candidates:
+        candidates = [active]
+    if not candidates:
+        raise InputError('There is no Sparse Mocap armature to reuse: untick "Reuse armature"')
+    if len(candidates) > 1:
+        raise InputError("Select the Sparse Mocap armature that is to get the take")
+    return _editable(candidates[0])
+
+
+def select_only(context: Context, obj: Object) -> None:
+    """Make the object active and alone selected."""
+    for other in context.view_layer.objects:
+        other.select_set(other == obj)
+    context.view_layer.objects.active = obj
+
+
+def _editable(armature: Object) -> Object:
+    name = armature.name
+    if armature.library is not None:
+        raise InputError(f'"{name}" is linked from another file: make it local first')
+    if armature.override_library is not None and armature.override_library.is_system_override:
+        raise InputError(f'"{name}" is an override that may not be edited: make it editable first')
+    animation = armature.animation_data
+    if animation is not None and animation.use_tweak_mode:
+        raise InputError(f'"{name}" is being tweaked in the NLA editor: leave tweak mode first')
+    return armature
+
+
+def _leave_mode(context: Context) -> None:
+    """Object mode; raises InputError when that is not possible now."""
+    if context.mode == "OBJECT":
+        return
+    if not bpy.ops.object.mode_set.poll():
+        raise InputError(f"Leave {context.mode.replace('_', ' ').title()} first")
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def _link(context: Context, obj: Object) -> None:
+    """Into the active collection, or the scene's own where that one is hidden or linked."""
+    collection = context.collection
+    if collection is None or collection.library is not None:
+        collection = context.scene.collection
+    collection.objects.link(obj)
+    if not obj.visible_get(view_layer=context.view_layer):
+        collection.objects.unlink(obj)
+        context.scene.collection.objects.link(obj)
+    if obj.name not in context.view_layer.objects:
+        raise InputError("The view layer shows no new objects: include its scene collection")
+
+
+def _tail(joint: int, parents: list[int], pivots: Floats, ends: Floats) -> Floats:
+    """Where the joint's bone ends: its end, or what stands for it where a joint has no length."""
+    if np.linalg.norm(ends[joint] - pivots[joint]) >= _SHORTEST_BONE_M:
+        return ends[joint]
+    parent = parents[joint]
+    if parent < 0:
+        return pivots[joint] + _ROOT_LENGTH_M * _UP
+    children = [pivots[child] for child, other in enumerate(parents) if other == joint]
+    if children:
+        middle = np.mean(children, axis=0)
+        if np.linalg.norm(middle - pivots[joint]) >= _SHORTEST_BONE_M:
+            return middle
+    along = pivots[joint] - pivots[parent]
+    length = np.linalg.norm(along)
+    direction = along / length if length >= _SHORTEST_BONE_M else _UP
+    return pivots[joint] + _LEAF_LENGTH_M * direction
+
+
+def _add_bones(data: Armature, bones: RestBones, scale: float) -> None:
+    """Make the bones; data is in edit mode."""
+    made = []
+    for name, parent, head, tail in zip(
+        bones.names,
+        bones.parents,
+        to_blender(bones.heads) * scale,
+        to_blender(bones.tails) * scale,
+        strict=True,
+    ):
+        bone = data.edit_bones.new(name)
+        bone.head, bone.tail = head, tail
+        bone.align_roll(_FRONT)
+        if parent >= 0:
+            bone.parent = made[parent]
+        made.append(bone)

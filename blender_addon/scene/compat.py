@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What differs between Blender 3.4 and 5.x. Features are asked for, never version numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+from bpy.types import Action, Context, FCurve, Object, UILayout
+from bpy_extras import anim_utils
+
+SLOT_NAME = "Sparse Mocap"  # one name, so that takes can be swapped on an armature
+
+HAS_PROGRESS_BAR = "progress" in UILayout.bl_rna.functions
+
+NewCurve = Callable[[str, int, str], FCurve]
+"""Makes the curve of a data path and array index in the group of that name."""
+
+
+def new_curve_of(action: Action) -> NewCurve:
+    """What makes new curves in a new action for an object."""
+    if not hasattr(action, "slots"):
+        return lambda path, index, group: action.fcurves.new(path, index=index, action_group=group)
+    slot = action.slots.new(id_type="OBJECT", name=SLOT_NAME)
+    if hasattr(anim_utils, "action_ensure_channelbag_for_slot"):
+        bag = anim_utils.action_ensure_channelbag_for_slot(action, slot)
+        return lambda path, index, group: bag.fcurves.new(path, index=index, group_name=group)
+    strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
+    bag = strip.channelbag(slot, ensure=True)
+
+    def new_curve(path: str, index: int, group: str) -> FCurve:
+        curve = bag.fcurves.new(path, index=index)
+        curve.group = bag.groups.get(group) or bag.groups.new(group)
+        return curve
+
+    return new_curve
+
+
+def curves_of(action: Action) -> list[FCurve]:
+    """The curves of an action's only slot."""
+    if not hasattr(action, "slots"):
+        return list(action.fcurves)
+    bags = (bag for layer in action.layers for strip in layer.strips for bag in strip.channelbags)
+    return [curve for bag in bags for curve in bag.fcurves]
+
+
+def assign_action(obj: Object, action: Action) -> None:
+    """Let the object play the action."""
+    data = obj.animation_data or obj.animation_data_create()
+    data.action = action
+    if hasattr(action, "slots") and action.slots:
+        data.action_slot = action.slots[0]
+
+
+def is_rendering() -> bool:
+    """Whether a render is at work: nothing may be changed then."""
+    return bpy.app.is_job_running("RENDER")
+
+
+def is_busy(context: Context, own: str) -> bool:
+    """Whether nothing may be changed just now: a render, or another tool the user is amid of."""
+    others: Any = getattr(context.window, "modal_operators", ())
+    return is_rendering() or any(_python_id(other.bl_idname) != own for other in others)
+
+
+def _python_id(identifier: str) -> str:
+    """object.delete for OBJECT_OT_delete."""
+    module, _, name = identifier.partition("_OT_")
+    return f"{module.lower()}.{name}" if name else identifier
+
+
+def redraw_views(context: Context) -> None:
+    """Draw all 3D views' sidebars anew."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()

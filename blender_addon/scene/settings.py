@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the animator chose, kept in the scene."""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, PointerProperty, StringProperty
+from bpy.types import PropertyGroup, Scene
+
+PRESETS = (
+    ("default", "Default", "Tuned for smooth, steady motion"),
+    ("paper", "Paper", "The constants of the publication (Tautges et al. 2011)"),
+)
+
+
+class SPARSEMOCAP_PG_settings(PropertyGroup):
+    """The settings of one scene."""
+
+    database: StringProperty(
+        name="Motion database", description="The motion database (.smdb) to draw poses from"
+    )
+    source: StringProperty(
+        name="Folder",
+        description="Folder with motion files: .bvh, or .asf with .amc; searched recursively",
+        subtype="DIR_PATH",
+    )
+    output: StringProperty(
+        name="Save as",
+        description="The database file to write; empty: beside the folder, under its name",
+    )
+    mirror: BoolProperty(
+        name="Mirror",
+        description="Add every motion mirrored as well: twice the motions, and no preferred side",
+        default=True,
+    )
+    exclude: StringProperty(
+        name="Leave out",
+        description="File names to leave out, separated by commas, for example: *_02.bvh, test*",
+    )
+    take: StringProperty(name="Take", description="The recorded take (.csv) to reconstruct")
+    preset: EnumProperty(name="Preset", description="How to reconstruct", items=PRESETS)
+    offline: BoolProperty(
+        name="Offline",
+        description="Look at the whole take for every frame: smoother, and slower",
+    )
+    start_frame: FloatProperty(
+        name="Start frame",
+        description="The frame on which the take begins",
+        default=1.0,
+        precision=0,
+        step=100,
+    )
+    reuse_armature: BoolProperty(
+        name="Reuse armature",
+        description="Add the action to a Sparse Mocap armature of this scene, not to a new one",
+    )
+
+
+def settings_of(scene: Scene) -> SPARSEMOCAP_PG_settings:
+    """The scene's settings."""
+    return scene.sparse_mocap
+
+
+def register() -> None:
+    """Give scenes their settings."""
+    bpy.utils.register_class(SPARSEMOCAP_PG_settings)
+    Scene.sparse_mocap = PointerProperty(type=SPARSEMOCAP_PG_settings)
+
+
+def unregister() -> None:
+    """Take the settings away."""
+    del Scene.sparse_mocap
+    bpy.utils.unregister_class(SPARSEMOCAP_PG_settings)

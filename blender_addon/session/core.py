@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The package ``sparse_mocap``, installed or in the add-on's ``vendor`` folder."""
+
+import importlib
+import sys
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+from .errors import InputError, one_line
+
+VENDOR = Path(__file__).resolve().parents[1] / "vendor"
+MODULES = ("sparse_mocap._core", "sparse_mocap.take", "sparse_mocap.reconstruction")
+
+
+def core() -> ModuleType:
+    """The package; raises InputError with one line for the animator when there is none."""
+    module, reason = _found()
+    if module is None:
+        raise InputError(reason)
+    return module
+
+
+def missing_reason() -> str:
+    """Why the package cannot be used and what to do about it; empty when all is well."""
+    return _found()[1]
+
+
+@cache
+def _found() -> tuple[ModuleType | None, str]:
+    try:
+        return _imported(), ""
+    except ModuleNotFoundError as error:
+        if (error.name or "").split(".")[0] != "sparse_mocap":
+            return None, f"The Python package {error.name} is missing: install it for Blender"
+        return None, _not_there(error.name or "")
+    except Exception as error:  # whatever a broken installation raises, the panel must say it
+        return None, f"The Sparse Mocap core does not load, reinstall the add-on: {one_line(error)}"
+
+
+def _imported() -> ModuleType:
+    """The package, with all the modules of it that the add-on uses."""
+    where = str(VENDOR)
+    if VENDOR.is_dir():
+        sys.path.insert(0, where)
+    try:
+        for name in MODULES:
+            importlib.import_module(name)
+    finally:
+        if where in sys.path:
+            sys.path.remove(where)
+    return sys.modules["sparse_mocap"]
+
+
+def _not_there(name: str) -> str:
+    python = f"{sys.version_info.major}.{sys.version_info.minor}"
+    if name == "sparse_mocap":
+        return "The Sparse Mocap core is not installed: install the add-on from its release file"
+    return (
+        f"The Sparse Mocap core was not made for this Blender's Python {python}: "
+        "install the add-on's release for this Blender"
+    )

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the panels of all steps share."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.types import UILayout
+
+from ..scene import compat
+from ..session import job as jobs
+from ..session.job import Job
+
+_REDRAW_S = 0.1
+
+
+class StepPanel:
+    """Mix-in: a panel in the sidebar of the 3D view."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Sparse Mocap"
+
+
+def action_button(
+    layout: UILayout, operator: str, icon: str, job_label: str, *, is_ready: bool
+) -> None:
+    """The step's main button, or the progress of what it started in its place."""
+    job = jobs.current()
+    if job is not None and job.label == job_label:
+        _progress(layout, job)
+        return
+    row = layout.row()
+    row.scale_y = 1.5
+    row.enabled = is_ready and job is None
+    row.operator(operator, icon=icon)
+
+
+def _progress(layout: UILayout, job: Job) -> None:
+    row = layout.row(align=True)
+    row.scale_y = 1.5
+    percent = f"{job.label} {job.fraction:.0%}"
+    if job.is_cancelled:
+        row.label(text="Stopping")
+    elif compat.HAS_PROGRESS_BAR:
+        row.progress(factor=job.fraction, text=percent)
+    else:
+        row.label(text=percent, icon="SORTTIME")
+    row.operator("sparse_mocap.cancel", text="", icon="X")
+    if job.what and not job.is_cancelled:
+        layout.label(text=job.what)
+    layout.label(text="Esc cancels")
+
+
+def redraw_soon() -> None:
+    """Draw the panels anew in a moment: a file is still being opened."""
+    if not bpy.app.timers.is_registered(_redraw):
+        bpy.app.timers.register(_redraw, first_interval=_REDRAW_S)
+
+
+def forget_redraw() -> None:
+    """Leave no timer behind."""
+    if bpy.app.timers.is_registered(_redraw):
+        bpy.app.timers.unregister(_redraw)
+
+
+def _redraw() -> None:
+    compat.redraw_views(bpy.context)

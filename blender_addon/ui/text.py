@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Text in panels: Blender's labels do not wrap by themselves."""
+
+from __future__ import annotations
+
+import textwrap
+
+from bpy.types import Context, UILayout
+
+_CHARACTER_PX = 6.4  # of the interface font, on average
+_MARGIN_PX = 50.0
+
+
+def paragraph(layout: UILayout, context: Context, text: str, icon: str = "NONE") -> None:
+    """Show the text over as many lines as the sidebar's width asks for."""
+    scale = context.preferences.system.ui_scale
+    width = context.region.width / scale if context.region is not None else 260.0
+    lines = textwrap.wrap(text, max(int((width - _MARGIN_PX) / _CHARACTER_PX), 16)) or [""]
+    column = layout.column(align=True)
+    column.scale_y = 0.8
+    for index, line in enumerate(lines):
+        if icon == "NONE":
+            column.label(text=line)
+        else:
+            column.label(text=line, icon=icon if index == 0 else "BLANK1")
+
+
+def error(layout: UILayout, context: Context, text: str) -> None:
+    """Show what is wrong."""
+    box = layout.box()
+    box.alert = True
+    paragraph(box, context, text, icon="ERROR")
+
+
+def facts(layout: UILayout, rows: list[tuple[str, str]]) -> None:
+    """Show names and values in two columns."""
+    box = layout.box().column(align=True)
+    box.scale_y = 0.85
+    for name, value in rows:
+        split = box.split(factor=0.42)
+        split.label(text=name)
+        split.label(text=value)
+
+
+def size(num_bytes: int) -> str:
+    """A file's size for people."""
+    return f"{num_bytes / 1e6:.1f} MB" if num_bytes < 1e9 else f"{num_bytes / 1e9:.2f} GB"
+
+
+def duration(seconds: float) -> str:
+    """A duration for people."""
+    return f"{seconds:.1f} s" if seconds < 120.0 else f"{seconds / 60.0:.1f} min"

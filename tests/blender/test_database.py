@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import bpy
+from support import addon, error_of, library, raised, settings
+
+
+def test_builds_and_is_chosen(tmp_path):
+    output = tmp_path / "built.smdb"
+    done = bpy.ops.sparse_mocap.build_database(
+        source=str(library().motions), filepath=str(output), mirror=True
+    )
+    assert done == {"FINISHED"}
+    assert [path.name for path in tmp_path.iterdir()] == ["built.smdb"]
+    assert settings().database == str(output)
+    database = addon("session.database").databases.get(str(output))
+    assert database.num_sources == library().num_files
+    assert database.num_clips == 2 * library().num_files
+    assert database.rate_hz == 25.0
+    assert database.size_bytes == output.stat().st_size
+    assert 0.01 < database.minutes < 10.0
+
+
+def test_what_is_not_given_comes_from_the_panel(tmp_path):
+    settings().source = str(library().motions)
+    settings().output = str(tmp_path / "panel")
+    settings().mirror = False
+    settings().exclude = "*walk*, nothing"
+    bpy.ops.sparse_mocap.build_database()
+    database = addon("session.database").databases.get(str(tmp_path / "panel.smdb"))
+    names = [path.stem for path in library().motions.iterdir() if "walk" not in path.stem]
+    assert database.num_clips == len(names)
+
+
+def test_cancel_leaves_no_file(tmp_path):
+    output = tmp_path / "cancelled.smdb"
+    job, _ = addon("session.database").build_job(
+        str(library().motions), str(output), mirror=True, exclude=""
+    )
+    raised(addon("session.job").Cancelled, lambda: job.run(job.cancel))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_open_chooses_a_database():
+    bpy.ops.sparse_mocap.open_database(filepath=str(library().database))
+    assert settings().database == str(library().database)
+
+
+def test_bad_sources_give_one_line(tmp_path):
+    def build(source, output="x.smdb"):
+        return error_of(
+            lambda: bpy.ops.sparse_mocap.build_database(
+                source=str(source), filepath=str(tmp_path / output)
+            )
+        )
+
+    assert "folder" in build("")
+    assert "nowhere" in build(tmp_path / "nowhere")
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    assert str(empty) in build(empty)
+    assert "empty" in build(library().motions, output="empty/missing/x.smdb")
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["empty"]
+
+
+def test_bad_databases_give_one_line(tmp_path):
+    def opened(path):
+        return error_of(lambda: bpy.ops.sparse_mocap.open_database(filepath=str(path)))
+
+    data = library().database.read_bytes()
+    damaged = tmp_path / "damaged.smdb"
+    for bad in (b"", data[:100], data[:-1], data[:-200] + bytes(100) + data[-100:]):
+        damaged.write_bytes(bad)
+        assert "damaged.smdb" in opened(damaged)
+    assert "No such file" in opened(tmp_path / "missing.smdb")
+    assert "folder" in opened(tmp_path)
+    assert "chosen" in opened("")
