@@ -134,6 +134,22 @@ void joint_angles(const Joint& joint, const Mat3& R_joint, const double* referen
   std::copy_n(best.begin(), count, angles);
 }
 
+void unwind_pose(const Skeleton& skeleton, const Eigen::VectorXd& reference,
+                 Eigen::Ref<Eigen::VectorXd> angles) {
+  const auto wrap = [](const Eigen::VectorXd& pose, const auto& near) -> Eigen::VectorXd {
+    return pose.array() - 2.0 * kPi * ((pose - near).array() / (2.0 * kPi)).round();
+  };
+  angles = wrap(angles, reference);
+  for (int j = 0; j < skeleton.num_joints(); ++j) {
+    if (skeleton.joint(j).axes.size() != 3) continue;
+    const auto near = reference.segment<3>(skeleton.angle_begin(j));
+    auto triple = angles.segment<3>(skeleton.angle_begin(j));
+    const Eigen::VectorXd other =
+        wrap(Vec3(triple[0] + kPi, kPi - triple[1], triple[2] + kPi), near);
+    if ((other - near).squaredNorm() < (triple - near).squaredNorm()) triple = other;
+  }
+}
+
 void forward_kinematics(const Skeleton& skeleton, const Vec3& position_root,
                         const std::vector<Mat3>& R_joint, JointTransforms& out) {
   const auto n = static_cast<std::size_t>(skeleton.num_joints());

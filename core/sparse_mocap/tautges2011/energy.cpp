@@ -1,78 +1,94 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/tautges2011/energy.hpp"
 
-#include <cmath>
 #include <utility>
 
 namespace sparse_mocap::tautges2011 {
+namespace {
 
-// A kernel sum at y: its value, and the mean and stiffness to which it collapses. With
+// What a kernel sum comes to at y, and the mean and stiffness to which it collapses. With
 // r_i = |y_i - y| (softened), r^p <= r_0^p + p/2 r_0^(p-2) (r^2 - r_0^2) for p <= 2, so
 // c_i = w_i p r_i^(p-2) gives sum <= value + S/2 (|mean - y'|^2 - |mean - y|^2), S = sum c_i, and
 // S (y - mean) is the gradient itself.
-struct Energy::Collapsed {
+struct Collapsed {
   double value = 0.0;
   double stiffness = 0.0;
   Eigen::VectorXd pull;  // S (y - mean)
 };
 
-Energy::Energy(const Skeleton& skeleton, Eigen::VectorXd weights, std::vector<KernelTerm> terms)
-    : skeleton_(skeleton), weights_(std::move(weights)), terms_(std::move(terms)) {
-  std::erase_if(terms_, [](const KernelTerm& term) { return term.weight == 0.0; });
+Eigen::ArrayXd softened_squares(const KernelTerm& term, const Eigen::VectorXd& y) {
+  return (term.targets.colwise() - y).colwise().squaredNorm().transpose().array() +
+         Energy::kSoftening * Energy::kSoftening;
 }
 
-Energy::Collapsed Energy::collapse(const KernelTerm& term, const Eigen::VectorXd& y) const {
-  const Eigen::ArrayXd squared =
-      (term.targets.colwise() - y).colwise().squaredNorm().transpose().array() +
-      kSoftening * kSoftening;
+double kernel_sum(const KernelTerm& term, const Eigen::VectorXd& weights,
+                  const Eigen::ArrayXd& squares) {
+  return term.weight * (weights.array() * squares.pow(0.5 * term.power)).sum();
+}
+
+Collapsed collapse(const KernelTerm& term, const Eigen::VectorXd& weights,
+                   const Eigen::VectorXd& y) {
+  const Eigen::ArrayXd squares = softened_squares(term, y);
   const double p = term.power;
   Collapsed out;
-  out.value = term.weight * (weights_.array() * squared.pow(0.5 * p)).sum();
-  const Eigen::VectorXd c = term.weight * p * weights_.array() * squared.pow(0.5 * p - 1.0);
+  out.value = kernel_sum(term, weights, squares);
+  const Eigen::VectorXd c = term.weight * p * weights.array() * squares.pow(0.5 * p - 1.0);
   out.stiffness = c.sum();
   out.pull = out.stiffness * y - term.targets * c;
   return out;
 }
 
-Eigen::VectorXd Energy::observed(const KernelTerm& term, const Eigen::VectorXd& angles,
-                                 const JointTransforms& transforms) const {
-  if (term.space.is_angles) return angles;
-  const auto& joints = term.space.joints;
-  const auto count = joints.empty() ? transforms.end.size() : joints.size();
+Eigen::VectorXd observed(const TermSpace& space, const Eigen::VectorXd& angles,
+                         const JointTransforms& transforms) {
+  if (space.is_angles) return angles;
+  const auto count = space.joints.empty() ? transforms.end.size() : space.joints.size();
   Eigen::VectorXd y(3 * static_cast<Eigen::Index>(count));
   for (std::size_t k = 0; k < count; ++k)
     y.segment<3>(3 * static_cast<Eigen::Index>(k)) =
-        transforms.end[joints.empty() ? k : static_cast<std::size_t>(joints[k])];
+        transforms.end[space.joints.empty() ? k : static_cast<std::size_t>(space.joints[k])];
   return y;
 }
 
-Eigen::MatrixXd Energy::observed_jacobian(const KernelTerm& term,
-                                          const Eigen::MatrixXd& positions_by_basis,
-                                          const Eigen::MatrixXd& basis) const {
-  if (term.space.is_angles) return basis;
-  const auto& joints = term.space.joints;
-  if (joints.empty()) return positions_by_basis;
-  Eigen::MatrixXd rows(3 * static_cast<Eigen::Index>(joints.size()), basis.cols());
-  for (std::size_t k = 0; k < joints.size(); ++k)
+Eigen::MatrixXd observed_jacobian(const TermSpace& space,
+                                  const Eigen::MatrixXd& positions_by_basis,
+                                  const Eigen::MatrixXd& basis) {
+  if (space.is_angles) return basis;
+  Eigen::MatrixXd rows(3 * static_cast<Eigen::Index>(space.joints.size()), basis.cols());
+  for (std::size_t k = 0; k < space.joints.size(); ++k)
     rows.middleRows(3 * static_cast<Eigen::Index>(k), 3) =
-        positions_by_basis.middleRows(3 * joints[k], 3);
+        positions_by_basis.middleRows(3 * space.joints[k], 3);
   return rows;
+}
+
+}  // namespace
+
+// Squared distances to many targets are those to their mean and a constant.
+Energy::Sum Energy::prepared(KernelTerm term, const Eigen::VectorXd& weights) {
+  if (term.power != 2.0) return {std::move(term), weights};
+  const double total = weights.sum();
+  const Eigen::VectorXd mean = term.targets * weights / total;
+  const Eigen::VectorXd spread =
+      (term.targets.colwise() - mean).colwise().squaredNorm().transpose();
+  const double constant = term.weight * spread.dot(weights);
+  term.targets = mean;
+  return {std::move(term), Eigen::VectorXd::Constant(1, total), constant};
+}
+
+Energy::Energy(const Skeleton& skeleton, const Eigen::VectorXd& weights,
+               std::vector<KernelTerm> terms)
+    : skeleton_(skeleton) {
+  for (auto& term : terms)
+    if (term.weight != 0.0) sums_.push_back(prepared(std::move(term), weights));
 }
 
 double Energy::value(const Eigen::VectorXd& angles) const {
   JointTransforms transforms;
   forward_kinematics(skeleton_, Vec3::Zero(), angles, transforms);
-  double sum = 0.0;
-  for (const auto& term : terms_) {
-    const Eigen::VectorXd y = observed(term, angles, transforms);
-    sum += term.weight *
-           (weights_.array() *
-            ((term.targets.colwise() - y).colwise().squaredNorm().transpose().array() +
-             kSoftening * kSoftening)
-                .pow(0.5 * term.power))
-               .sum();
-  }
-  return sum;
+  double total = 0.0;
+  for (const auto& [term, weights, constant] : sums_)
+    total += constant + kernel_sum(term, weights,
+                                   softened_squares(term, observed(term.space, angles, transforms)));
+  return total;
 }
 
 double Energy::value_and_gradient(const Eigen::VectorXd& angles, Eigen::VectorXd& gradient) const {
@@ -88,22 +104,22 @@ Energy::Model Energy::majorised(const Eigen::VectorXd& angles, const Eigen::Matr
       position_jacobian(skeleton_, angles, transforms) * basis;
   const auto n = basis.cols();
   Model model{0.0, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
+  auto hessian = model.hessian.selfadjointView<Eigen::Lower>();
   double stiffness_of_all_positions = 0.0;
-  for (const auto& term : terms_) {
-    const Collapsed sum = collapse(term, observed(term, angles, transforms));
-    model.value += sum.value;
+  for (const auto& [term, weights, constant] : sums_) {
+    const Collapsed sum = collapse(term, weights, observed(term.space, angles, transforms));
+    model.value += constant + sum.value;
     if (!term.space.is_angles && term.space.joints.empty()) {
       model.gradient.noalias() += positions_by_basis.transpose() * sum.pull;
       stiffness_of_all_positions += sum.stiffness;
       continue;
     }
-    const Eigen::MatrixXd jacobian = observed_jacobian(term, positions_by_basis, basis);
+    const Eigen::MatrixXd jacobian = observed_jacobian(term.space, positions_by_basis, basis);
     model.gradient.noalias() += jacobian.transpose() * sum.pull;
-    model.hessian.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose(), sum.stiffness);
+    hessian.rankUpdate(jacobian.transpose(), sum.stiffness);
   }
   if (stiffness_of_all_positions != 0.0)
-    model.hessian.selfadjointView<Eigen::Lower>().rankUpdate(positions_by_basis.transpose(),
-                                                             stiffness_of_all_positions);
+    hessian.rankUpdate(positions_by_basis.transpose(), stiffness_of_all_positions);
   model.hessian.triangularView<Eigen::StrictlyUpper>() = model.hessian.transpose();
   return model;
 }

@@ -33,7 +33,7 @@ class Energy {
  public:
   static constexpr double kSoftening = 1e-3;  // rad or m
 
-  Energy(const Skeleton& skeleton, Eigen::VectorXd weights, std::vector<KernelTerm> terms);
+  Energy(const Skeleton& skeleton, const Eigen::VectorXd& weights, std::vector<KernelTerm> terms);
 
   double value(const Eigen::VectorXd& angles) const;
   // Also d value / d angles.
@@ -51,17 +51,16 @@ class Energy {
   Model majorised(const Eigen::VectorXd& angles, const Eigen::MatrixXd& basis) const;
 
  private:
-  struct Collapsed;
-  Collapsed collapse(const KernelTerm& term, const Eigen::VectorXd& y) const;
-  Eigen::VectorXd observed(const KernelTerm& term, const Eigen::VectorXd& angles,
-                           const JointTransforms& transforms) const;
-  Eigen::MatrixXd observed_jacobian(const KernelTerm& term,
-                                    const Eigen::MatrixXd& positions_by_basis,
-                                    const Eigen::MatrixXd& basis) const;
+  // A kernel sum with the weights of its targets and what of it does not depend on the pose.
+  struct Sum {
+    KernelTerm term;
+    Eigen::VectorXd weights;
+    double constant = 0.0;
+  };
+  static Sum prepared(KernelTerm term, const Eigen::VectorXd& weights);
 
   const Skeleton& skeleton_;
-  Eigen::VectorXd weights_;
-  std::vector<KernelTerm> terms_;
+  std::vector<Sum> sums_;
 };
 
 }  // namespace sparse_mocap::tautges2011

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/tautges2011/minimizer.hpp"
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -54,7 +55,7 @@ Minimum minimize(const Energy& energy, const PoseSubspace& subspace,
       minimum.is_converged = true;
       break;
     }
-    minimum.is_converged = model.value - value <= kRelativeDecrease * model.value;
+    minimum.is_converged = model.value - value <= kRelativeDecrease * std::abs(model.value);
     y += step;
     model = energy.majorised(subspace.pose(y), subspace.basis);
   }

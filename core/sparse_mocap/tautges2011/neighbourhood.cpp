@@ -56,7 +56,7 @@ void kinematics_at(const MotionDatabase& database, int frame, Eigen::Ref<Eigen::
 }
 
 Neighbourhood gather(const MotionDatabase& database, std::vector<Path> paths,
-                     Eigen::VectorXd weights) {
+                     Eigen::VectorXd weights, const Eigen::VectorXd* near_angles) {
   Neighbourhood out;
   const auto n = static_cast<Eigen::Index>(paths.size());
   const Eigen::Index dimensions = database.positions().cols();
@@ -81,11 +81,9 @@ Neighbourhood gather(const MotionDatabase& database, std::vector<Path> paths,
         path.previous_frame >= 0 ? path.previous_frame : std::max(path.frame - 1, clip.begin);
     kinematics_at(database, before, out.velocities_before.col(i), unused);
   }
-  // Angles a full turn apart are one pose; the best path says which turn is meant.
-  const Eigen::VectorXd reference = out.angles.col(0);
-  out.angles.colwise() -= reference;
-  out.angles.array() -= 2.0 * kPi * (out.angles.array() / (2.0 * kPi)).round();
-  out.angles.colwise() += reference;
+  if (near_angles != nullptr) unwind_pose(database.skeleton(), *near_angles, out.angles.col(0));
+  const Eigen::VectorXd best = out.angles.col(0);
+  for (Eigen::Index i = 1; i < n; ++i) unwind_pose(database.skeleton(), best, out.angles.col(i));
   out.paths = std::move(paths);
   out.weights = std::move(weights);
   return out;

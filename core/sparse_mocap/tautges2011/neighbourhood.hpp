@@ -17,7 +17,7 @@ namespace sparse_mocap::tautges2011 {
 struct Neighbourhood {
   std::vector<Path> paths;
   Eigen::VectorXd weights;        // W, sum 1, equation (1)
-  Eigen::MatrixXd angles;         // Q, 43 x I, rad, on the same turn as the best path's
+  Eigen::MatrixXd angles;         // Q, 43 x I, rad, each as near to the best path's as it can be put
   Eigen::MatrixXd positions;      // X, 63 x I, m
   Eigen::MatrixXd velocities;     // V, 63 x I, m/s
   Eigen::MatrixXd accelerations;  // A, 63 x I, m/s^2
@@ -36,8 +36,9 @@ Eigen::VectorXd path_weights(std::span<const Path> paths, WeightRule rule, doubl
 void kinematics_at(const MotionDatabase& database, int frame, Eigen::Ref<Eigen::VectorXd> velocity,
                    Eigen::Ref<Eigen::VectorXd> acceleration);
 
-// Looks the paths up in the database.
+// Looks the paths up in the database. near_angles, when given, is a pose near which the best path's
+// angles are put.
 Neighbourhood gather(const MotionDatabase& database, std::vector<Path> paths,
-                     Eigen::VectorXd weights);
+                     Eigen::VectorXd weights, const Eigen::VectorXd* near_angles);
 
 }  // namespace sparse_mocap::tautges2011

@@ -130,7 +130,8 @@ PoseEstimate Reconstructor::estimate_online(const Window& window) {
 // Section 5: the pose that the paths and the past ask for.
 PoseEstimate Reconstructor::synthesize(std::vector<Path> paths, Eigen::VectorXd weights,
                                        const Window& window) {
-  Neighbourhood neighbours = gather(*database_, std::move(paths), std::move(weights));
+  Neighbourhood neighbours = gather(*database_, std::move(paths), std::move(weights),
+                                    past_ ? &past_->angles : nullptr);
   if (config_.regression_ridge > 0.0) correct_poses(neighbours, window);
   const Eigen::VectorXd angles = minimize_energy(neighbours);
   return remember(neighbours, angles, window);
