@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Full-body motion from a few inertial sensors and a database of motion capture.
+
+Names are loaded when they are first used, so that what needs no compiled core (the generator of
+the demonstration's motions) works without one.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ._core import (
+        FILTER_REACH_S,
+        GRAVITY_MPS2,
+        BuildReport,
+        Cancelled,
+        Clip,
+        ConfigError,
+        FormatError,
+        MappingError,
+        Motion,
+        MotionDatabase,
+        PoseEstimate,
+        Reconstruction,
+        Reconstructor,
+        Skeleton,
+        __version__,
+        build_database,
+        filtered_at,
+        method_names,
+        nearest_poses,
+        nearest_windows,
+        playback_best_path,
+        preset_names,
+        read_motion,
+        simulate,
+        site_names,
+        standard_motion,
+        write_bvh,
+    )
+    from .noise import NoiseModel, noise_presets, noisy
+    from .positions import read_positions, write_positions
+    from .take import SensorRecord, Take, TakeError, read_take, resampled, simulated, write_take
+
+__all__ = [
+    "FILTER_REACH_S",
+    "GRAVITY_MPS2",
+    "BuildReport",
+    "Cancelled",
+    "Clip",
+    "ConfigError",
+    "FormatError",
+    "MappingError",
+    "Motion",
+    "MotionDatabase",
+    "NoiseModel",
+    "PoseEstimate",
+    "Reconstruction",
+    "Reconstructor",
+    "SensorRecord",
+    "Skeleton",
+    "Take",
+    "TakeError",
+    "__version__",
+    "build_database",
+    "filtered_at",
+    "method_names",
+    "nearest_poses",
+    "nearest_windows",
+    "noise_presets",
+    "noisy",
+    "playback_best_path",
+    "preset_names",
+    "read_motion",
+    "read_positions",
+    "read_take",
+    "resampled",
+    "simulate",
+    "simulated",
+    "site_names",
+    "standard_motion",
+    "write_bvh",
+    "write_positions",
+    "write_take",
+]
+
+_PYTHON_HOMES = {
+    **dict.fromkeys(("NoiseModel", "noise_presets", "noisy"), ".noise"),
+    **dict.fromkeys(("read_positions", "write_positions"), ".positions"),
+    **dict.fromkeys(
+        ("SensorRecord", "Take", "TakeError", "read_take", "resampled", "simulated", "write_take"),
+        ".take",
+    ),
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    home = _PYTHON_HOMES.get(name)
+    module = importlib.import_module(home, __name__) if home else _compiled()
+    value = getattr(module, name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
+def _compiled() -> Any:
+    """Return the compiled module; ImportError in one line when this Python cannot load it."""
+    try:
+        return importlib.import_module("._core", __name__)
+    except ImportError as error:
+        version = ".".join(map(str, sys.version_info[:3]))
+        built = sorted(path.name for path in Path(__file__).parent.glob("_core*.so"))
+        found = f"the folder holds {', '.join(built)}" if built else "none is built"
+        raise ImportError(
+            f"sparse_mocap has no compiled core for this Python, CPython {version} ({found}): "
+            f"install the wheel of this version or build it; {error}",
+            name=f"{__name__}._core",
+        ) from None

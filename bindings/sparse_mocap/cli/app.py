@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tree of commands."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import click
+
+from .faults import Fault, as_faults
+
+_COMMANDS = {
+    "convert": ".convert:convert",
+    "database": ".database:database",
+    "evaluate": ".evaluate:evaluate",
+    "reconstruct": ".reconstruct:reconstruct",
+    "simulate": ".simulate:simulate",
+}
+"""A command's name, and the module that has it (loaded only when it is called)."""
+
+
+class _Commands(click.Group):
+    """Loads commands when they are asked for and turns what they raise into exit codes."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted(_COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in _COMMANDS:
+            return None
+        module, name = _COMMANDS[cmd_name].split(":")
+        with as_faults():
+            command = getattr(importlib.import_module(module, __package__), name)
+        assert isinstance(command, click.Command)
+        return command
+
+    def invoke(self, ctx: click.Context) -> Any:
+        with as_faults():
+            return super().invoke(ctx)
+
+
+def _print_version(ctx: click.Context, _: click.Parameter, is_wanted: bool) -> None:
+    if is_wanted and not ctx.resilient_parsing:
+        with as_faults():
+            from .. import __version__
+        click.echo(f"sparse-mocap {__version__}")
+        ctx.exit()
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_print_version,
+    help="Show the version and exit.",
+)  # fmt: skip
+def app() -> None:
+    """Full-body motion from a few inertial sensors and a database of motion capture.
+
+    Exit code 0 is success, 1 says that the input is at fault, 2 that the command is.
+    """
+
+
+def run(arguments: Sequence[str] | None = None) -> int:
+    """Runs a command line (the process' own when None) and returns its exit code."""
+    try:
+        result = app.main(arguments, prog_name="sparse-mocap", standalone_mode=False)
+    except click.ClickException as error:
+        error.show()
+        return error.exit_code
+    except click.Abort:
+        Fault("cancelled").show()
+        return 130
+    except BrokenPipeError:
+        sys.stderr.close()  # nobody reads any more: say nothing on the way out
+        return 1
+    return result if isinstance(result, int) else 0

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What commands show: results on standard output, progress and warnings on standard error."""
+
+from __future__ import annotations
+
+import json
+import signal
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.console import Console
+from rich.measure import Measurement
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeRemainingColumn,
+)
+from rich.table import Table
+
+from ..files import write_text
+
+ProgressCallback = Callable[[int, int, str], bool]
+
+_MOST_WARNINGS = 10
+
+
+@contextmanager
+def progress_bar(label: str) -> Iterator[ProgressCallback]:
+    """Gives a callback that moves a bar, on a terminal, and returns False after Ctrl-C."""
+    console = Console(stderr=True)
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+        TextColumn("{task.fields[what]}", table_column=None),
+        console=console,
+        disable=not console.is_terminal,
+        transient=True,
+    )
+    with _interrupted() as interrupted, bar:
+        task = bar.add_task(label, total=None, what="")
+
+        def callback(done: int, total: int, what: str) -> bool:
+            bar.update(task, completed=done, total=total, what=what[:40])
+            return not interrupted.is_set()
+
+        yield callback
+
+
+@contextmanager
+def _interrupted() -> Iterator[threading.Event]:
+    """Gives an event that Ctrl-C sets; a second Ctrl-C interrupts as ever."""
+    event = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield event
+        return
+    before = signal.getsignal(signal.SIGINT)
+
+    def stop(number: int, frame: Any) -> None:
+        event.set()
+        signal.signal(signal.SIGINT, before)
+
+    signal.signal(signal.SIGINT, stop)
+    try:
+        yield event
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def warn(lines: Sequence[str]) -> None:
+    """Prints warnings, and only the number of those beyond the first few."""
+    for line in lines[:_MOST_WARNINGS]:
+        click.echo(f"warning: {' '.join(line.split())}", err=True)
+    if len(lines) > _MOST_WARNINGS:
+        click.echo(f"warning: and {len(lines) - _MOST_WARNINGS} more", err=True)
+
+
+def print_table(table: Table) -> None:
+    """Prints a table as wide as its content, however narrow the terminal is."""
+    console = Console(highlight=False)
+    width = Measurement.get(console, console.options.update(max_width=1000), table).maximum
+    Console(highlight=False, width=width).print(table)
+
+
+def write_json(path: Path, value: Any) -> None:
+    """Writes a JSON file atomically."""
+    write_text(path, json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n")

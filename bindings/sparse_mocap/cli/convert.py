@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``sparse-mocap convert``: motion files into others."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+import numpy as np
+
+from .. import MotionDatabase, read_motion, standard_motion, write_bvh, write_positions
+from .console import warn
+from .options import FilePath, check_ending, frame_option
+
+
+@click.command()
+@click.argument("clip", metavar="CLIP", type=FilePath)
+@click.option(
+    "-o", "--output", type=FilePath, required=True,
+    help="OUT.bvh, or OUT.csv for a table of the standard joints' positions.",
+)  # fmt: skip
+@click.option(
+    "--skeleton", metavar="own|DB.smdb", default="own", show_default=True,
+    help="The file's own skeleton (for .csv: the standard one with the file's proportions), or a"
+    " database's.",
+)  # fmt: skip
+@frame_option
+@click.option("--fps", type=float, help="Resamples to so many frames a second.")
+def convert(clip: Path, output: Path, skeleton: str, frame: str, fps: float | None) -> None:
+    """Converts a motion file, .bvh or .amc."""
+    ending = check_ending(output, ".bvh", ".csv")
+    motion, warnings = read_motion(clip)
+    if skeleton != "own":
+        motion, more = standard_motion(motion, MotionDatabase(skeleton).skeleton)
+        warnings += more
+    elif ending == ".csv":
+        motion, more = standard_motion(motion)
+        warnings += more
+    if fps is not None:
+        motion = motion.resampled(fps)
+    if ending == ".bvh":
+        write_bvh(output, motion)
+    else:
+        times = np.arange(motion.num_frames) * motion.frame_time_s
+        write_positions(output, times, motion.skeleton.names, motion.joint_positions(frame))
+    warn(warnings)

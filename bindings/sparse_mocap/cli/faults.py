@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What ends a command: one line and an exit code."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import IO, Any
+
+import click
+
+
+class Fault(click.ClickException):
+    """The input is at fault; shown as one line without a traceback."""
+
+    exit_code = 1
+
+    def show(self, file: IO[Any] | None = None) -> None:
+        """Prints the line."""
+        click.echo(f"sparse-mocap: {' '.join(self.message.split())}", file=file, err=True)
+
+
+class Stopped(Fault):
+    """The user asked to stop."""
+
+    exit_code = 130
+
+
+@contextmanager
+def as_faults() -> Iterator[None]:
+    """Turns the errors that an input, a setting or the system causes into faults."""
+    try:
+        yield
+    except OSError as error:
+        if isinstance(error, BrokenPipeError):
+            raise
+        raise Fault(_told(error)) from error
+    except ImportError as error:
+        raise Fault(_missing(error)) from error
+    except Exception as error:
+        if not isinstance(error, _core_errors()):
+            raise
+        raise (Stopped if _is_cancelled(error) else Fault)(str(error)) from error
+
+
+def _core_errors() -> tuple[type[Exception], ...]:
+    from .. import Cancelled, ConfigError, FormatError, MappingError
+
+    return (FormatError, ConfigError, MappingError, Cancelled)
+
+
+def _is_cancelled(error: Exception) -> bool:
+    from .. import Cancelled
+
+    return isinstance(error, Cancelled)
+
+
+def _told(error: OSError) -> str:
+    if error.filename is None or error.strerror is None:
+        return str(error)
+    return f"{error.filename}: {error.strerror}"
+
+
+def _missing(error: ImportError) -> str:
+    if error.name in ("matplotlib", "rich"):
+        return f"this needs {error.name}; install it with: pip install 'sparse-mocap[cli]'"
+    return str(error)

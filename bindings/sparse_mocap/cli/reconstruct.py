@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``sparse-mocap reconstruct``: a take into a motion."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import (
+    MotionDatabase,
+    Reconstruction,
+    Reconstructor,
+    read_take,
+    resampled,
+    write_bvh,
+    write_positions,
+)
+from ..reconstruction import (
+    is_unlike_the_database,
+    latency_ms,
+    mean_misfit_mps2,
+    report,
+    suspicions,
+)
+from .console import progress_bar, warn, write_json
+from .options import (
+    FilePath,
+    check_ending,
+    check_presets,
+    frame_option,
+    method_option,
+    place_option,
+    places_of,
+)
+
+
+@click.command()
+@click.argument("take", metavar="TAKE.csv", type=FilePath)
+@click.option("--database", "database_path", metavar="DB.smdb", type=FilePath, required=True)
+@click.option("-o", "--output", type=FilePath, required=True, help="The motion (.bvh).")
+@method_option
+@click.option(
+    "--preset", default="default", show_default=True, help="The method's settings by name."
+)
+@click.option("--offline", is_flag=True, help="Looks at the whole take for every frame.")
+@click.option("--positions", type=FilePath, help="Also writes the joints' positions (.csv).")
+@frame_option
+@click.option("--json", "json_path", type=FilePath, help="Also writes a report on every frame.")
+@place_option
+def reconstruct(
+    take: Path,
+    database_path: Path,
+    output: Path,
+    method: str,
+    preset: str,
+    offline: bool,
+    positions: Path | None,
+    frame: str,
+    json_path: Path | None,
+    places: tuple[tuple[str, float], ...],
+) -> None:
+    """Turns a take into a motion.
+
+    The motion is on the database's standard skeleton and at its rate.
+    """
+    check_ending(output, ".bvh")
+    check_presets(method, [preset])
+    recorded = read_take(take)
+    database = MotionDatabase(database_path)
+    times, readings = resampled(recorded, database.rate_hz)
+    where = places_of(recorded.sites, places)
+    reconstructor = Reconstructor(
+        database, recorded.sites, method=method, preset=preset, places=where
+    )
+    with progress_bar("Reconstructing") as progress:
+        solved = reconstructor.solve(readings, offline=offline, progress=progress)
+    late = None if offline else latency_ms(reconstructor, database)
+    write_bvh(output, solved.motion)
+    if positions is not None:
+        names = solved.motion.skeleton.names
+        write_positions(positions, times, names, solved.motion.joint_positions(frame))
+    if json_path is not None:
+        options = {"method": method, "preset": preset, "offline": offline, "places": where}
+        about = {"take": str(take), "database": str(database_path), "options": options,
+                 "rate_hz": database.rate_hz, "latency_frames": reconstructor.latency_frames,
+                 "latency_ms": late,
+                 "is_unlike_the_database": is_unlike_the_database(solved, readings)}  # fmt: skip
+        write_json(json_path, about | report(database, recorded.sites, times, solved))
+    warn(suspicions(recorded))
+    _tell(output, solved, readings, late)
+
+
+def _tell(
+    output: Path, solved: Reconstruction, readings: NDArray[np.float64], late_ms: float | None
+) -> None:
+    latency = "whole take" if late_ms is None else f"{late_ms:.0f} ms"
+    click.echo(
+        f"{output}: {len(readings)} frames, mean misfit {mean_misfit_mps2(solved):.2f} m/s^2,"
+        f" latency {latency}"
+    )
+    if is_unlike_the_database(solved, readings):
+        click.echo(
+            "The database holds nothing like this performance: the motion is a guess. "
+            "Add motion capture of such movements, and check where and how the sensors are worn."
+        )

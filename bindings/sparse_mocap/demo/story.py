@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The demonstration's steps, from a motion to a reconstruction in Blender."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import (
+    MotionDatabase,
+    Reconstruction,
+    Reconstructor,
+    build_database,
+    nearest_poses,
+    write_bvh,
+    write_take,
+)
+from ..cli.console import progress_bar
+from ..evaluation import (
+    Performance,
+    frame_errors,
+    interpolated,
+    joint_errors,
+    performed,
+    reconstructed_positions,
+)
+from ..evaluation.metrics import CM
+from ..plots import plot_errors_over_time
+from ..reconstruction import latency_ms
+from ..take import Take
+from .blender import find_blender, render
+from .choice import Choice, generated, recorded
+
+Floats = NDArray[np.float64]
+
+
+def play(
+    output: Path, database_source: Path | None, blender: Path | None, is_blender_wanted: bool
+) -> int:
+    """Plays the whole path and says what came of it; 1 when Blender's part is missing."""
+    output.mkdir(parents=True, exist_ok=True)
+    output = output.resolve()
+    choice = _chosen(output, database_source)
+    database = _built(choice, output / "database.smdb")
+    performance = performed(choice.performance, database.rate_hz)
+    origin = f"simulated from {choice.performance.name} at 100 Hz without noise"
+    write_take(output / "take.csv", Take(performance.take.sensors, (origin,)))
+    reconstructor = Reconstructor(database, performance.take.sites)
+    with progress_bar("Reconstructing") as progress:
+        solved = reconstructor.solve(performance.readings, progress=progress)
+    write_bvh(output / "take.bvh", solved.motion)
+    write_bvh(output / "performed.bvh", performance.motion_on(database))
+    late = latency_ms(reconstructor, database)
+    click.echo(
+        f"Reconstructed {len(performance.readings)} frames from four simulated accelerometers"
+        f" without noise, online, {late:.0f} ms late"
+    )
+    _compare(database, performance, solved, output / "errors.png")
+    _say("take", output / "take.csv")
+    _say("performed motion", output / "performed.bvh")
+    _say("reconstructed motion", output / "take.bvh")
+    _say("error over time", output / "errors.png")
+    return _show_in_blender(output, blender) if is_blender_wanted else 0
+
+
+def _chosen(output: Path, database_source: Path | None) -> Choice:
+    if database_source is None:
+        with progress_bar("Generating") as progress:
+            choice = generated(output, progress)
+        click.echo("Performing a generated motion of an actor the database does not know")
+        return choice
+    with progress_bar("Reading") as progress:
+        choice = recorded(database_source, progress)
+    click.echo(f"Performing {choice.performance.name}, which the database is built without")
+    return choice
+
+
+def _built(choice: Choice, path: Path) -> MotionDatabase:
+    with progress_bar("Building") as progress:
+        report = build_database(
+            [choice.library], path, mirror=True, exclude=choice.exclude, progress=progress
+        )
+    click.echo(
+        f"Built a database of {report.num_clips} clips, {report.num_frames} frames,"
+        f" from {report.num_files} files"
+    )
+    return MotionDatabase(path)
+
+
+def _compare(
+    database: MotionDatabase, performance: Performance, solved: Reconstruction, plot: Path
+) -> None:
+    """Says and draws how far the reconstruction is from the truth, and the best pose there is."""
+    truth = np.asarray(performance.motion_on(database).joint_positions("heading"))
+    times = np.arange(len(truth)) / database.rate_hz
+    times, truth = times[times <= performance.times_s[-1]], truth[: len(performance.times_s)]
+    truth = truth[: len(times)]
+    estimate = interpolated(performance.times_s, reconstructed_positions(solved), times)
+    poses = database.array("positions").reshape(database.num_frames, -1, 3)
+    oracle = np.asarray(poses[nearest_poses(database, truth)], float)
+    errors = CM * frame_errors(joint_errors(truth, estimate))
+    best = CM * frame_errors(joint_errors(truth, oracle))
+    plot_errors_over_time(
+        {
+            "reconstruction": (times, errors),
+            "oracle (nearest pose in the database)": (times, best),
+        },
+        "Reconstruction from four accelerometers",
+        plot,
+    )
+    click.echo(
+        f"Error {errors.mean():.1f} cm (RMS over the joints, mean over the frames);"
+        f" the database's nearest poses to the truth: {best.mean():.1f} cm"
+    )
+
+
+def _show_in_blender(output: Path, named: Path | None) -> int:
+    blender = find_blender(named)
+    if blender is None:
+        missing = f"{named} is no program" if named else "no Blender was found"
+        click.echo(f"Left out take.blend and figures.png: {missing}", err=True)
+        return 1
+    click.echo("Rendering in Blender ...")
+    scene = render(blender, output / "performed.bvh", output / "take.bvh", output)
+    if scene.fault:
+        click.echo(f"Left out take.blend and figures.png: Blender {scene.fault}", err=True)
+        return 1
+    _say("Blender file", scene.blend)
+    _say("picture", scene.picture)
+    return 0
+
+
+def _say(what: str, path: Path) -> None:
+    click.echo(f"  {what:<20} {path}")

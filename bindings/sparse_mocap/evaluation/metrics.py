@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far a motion is from the truth."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+CM = 100.0
+
+
+def interpolated(times_s: Floats, values: Floats, wanted_s: Floats) -> Floats:
+    """Returns values (T, ...) at the times wanted, linearly between the nearest two."""
+    flat = values.reshape(len(times_s), -1)
+    columns = [np.interp(wanted_s, times_s, flat[:, k]) for k in range(flat.shape[1])]
+    return np.stack(columns, axis=1).reshape(len(wanted_s), *values.shape[1:])
+
+
+def joint_errors(truth: Floats, estimate: Floats) -> Floats:
+    """Returns the distances (T, J), in m, between positions (T, J, 3)."""
+    return np.asarray(np.linalg.norm(estimate - truth, axis=-1))
+
+
+def frame_errors(errors: Floats) -> Floats:
+    """Returns for each frame the RMS over its joints (T, J)."""
+    return np.asarray(np.sqrt(np.mean(errors**2, axis=1)))
+
+
+def mean_jerk(positions: Floats, rate_hz: float) -> float:
+    """Returns the mean size of the joints' third derivative, in km/s^3; NaN under 4 frames."""
+    if len(positions) < 4:
+        return float("nan")
+    third = np.diff(positions, 3, axis=0)
+    return float(np.linalg.norm(third, axis=-1).mean()) * rate_hz**3 / 1000.0

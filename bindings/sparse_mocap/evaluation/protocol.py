@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which clips are tested, and what the database may know then (Tautges et al. 2011, table I)."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from fnmatch import fnmatch
+from pathlib import Path
+
+from .. import Clip, FormatError
+from ..table_errors import TableError
+
+SCENARIOS = {
+    1: "the database holds other clips of the actor and of others",
+    2: "the database holds other clips of the actor only",
+    3: "the database holds clips of other actors only",
+}
+
+
+def motion_files(folder: str | os.PathLike[str]) -> dict[str, list[Path]]:
+    """Returns the motion files in a folder (recursively) by their names."""
+    files: dict[str, list[Path]] = {}
+    for path in sorted(Path(folder).rglob("*")):
+        if path.suffix.lower() in (".bvh", ".amc") and path.is_file():
+            files.setdefault(path.name, []).append(path)
+    return files
+
+
+def choose_tests(clips: Sequence[Clip], pattern: str | None = None) -> list[int]:
+    """Returns the indices of the clips to test: neither mirrored nor reversed ones.
+
+    Without a pattern on file names these are, for each actor and class, the first by name.
+    """
+    originals = sorted(
+        (i for i, clip in enumerate(clips) if not clip.is_mirrored and not clip.is_reversed),
+        key=lambda i: (clips[i].name, clips[i].source),
+    )
+    if pattern is not None:
+        return [i for i in originals if fnmatch(clips[i].source.lower(), pattern.lower())]
+    firsts: dict[tuple[str, str], int] = {}
+    for i in originals:
+        firsts.setdefault((clips[i].actor, clips[i].motion_class), i)
+    return list(firsts.values())
+
+
+def excluded_clips(clips: Sequence[Clip], test: int, scenario: int) -> list[int]:
+    """Returns the clips that a test's database must not have.
+
+    Whatever comes from the test's file, or from a copy of it, is always among them.
+    """
+    tested = clips[test]
+
+    def is_excluded(clip: Clip) -> bool:
+        is_same = clip.source == tested.source or clip.source_hash == tested.source_hash
+        is_same_actor = clip.actor == tested.actor
+        if scenario == 2:
+            return is_same or not is_same_actor
+        if scenario == 3:
+            return is_same or is_same_actor
+        return is_same
+
+    return [i for i, clip in enumerate(clips) if is_excluded(clip)]
+
+
+def source_path(files: dict[str, list[Path]], clip: Clip) -> Path:
+    """Returns the file that a clip was made from. Raises FormatError where that is unclear."""
+    found = files.get(clip.source, [])
+    if len(found) != 1:
+        problem = "is gone" if not found else f"occurs {len(found)} times"
+        raise _unclear(clip.source, problem)
+    return found[0]
+
+
+def _unclear(name: str, problem: str) -> FormatError:
+    return TableError(name, 0, f"{problem} under the database's source; rename it")

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files that are there whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+
+@contextmanager
+def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Gives a path beside ``path`` to write to, which takes its place when the block ends well.
+
+    When it does not, ``path`` is as it was and nothing is left behind.
+    """
+    target = Path(path)
+    if target.is_dir():
+        raise IsADirectoryError(21, "Is a directory", str(target))
+    try:
+        handle, name = tempfile.mkstemp(
+            dir=target.parent, prefix=f".{target.stem}.", suffix=target.suffix
+        )
+    except OSError as error:  # names the file that was asked for, not the temporary one
+        raise type(error)(error.errno, error.strerror, str(target)) from None
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        _take_over(temporary, target)
+    except BaseException:
+        with suppress(OSError):
+            temporary.unlink()
+        raise
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Writes UTF-8 text atomically, with line ends as they are in ``text``."""
+    with replaced(path) as temporary:
+        temporary.write_text(text, encoding="utf-8", newline="")
+
+
+def _take_over(temporary: Path, target: Path) -> None:
+    mode = target.stat().st_mode if target.exists() else 0o666 & ~_umask()
+    temporary.chmod(mode & 0o777)
+    with temporary.open("rb") as file:
+        os.fsync(file.fileno())
+    os.replace(temporary, target)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

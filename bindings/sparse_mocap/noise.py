@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What real sensors add to ideal readings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import GRAVITY_MPS2
+from .take import SensorRecord, Take
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class NoiseModel:
+    """How far sensors are from ideal; every sensor of a take draws its own errors."""
+
+    accelerometer_density: float = 0.0
+    """m/s^2 per square root of Hz, white."""
+    accelerometer_bias: float = 0.0
+    """m/s^2, standard deviation of each axis' constant error."""
+    gyroscope_density: float = 0.0
+    """rad/s per square root of Hz, white."""
+    gyroscope_bias: float = 0.0
+    """rad/s, standard deviation of each axis' constant error."""
+    scale_error: float = 0.0
+    """Standard deviation of each axis' relative error of scale, 0.01 is 1 %."""
+    misalignment_rad: float = 0.0
+    """By how much each sensor is turned on the body, about an axis of its own."""
+    latency_s: float = 0.0
+    """How late the readings come."""
+
+
+_MILLI_G = 1e-3 * GRAVITY_MPS2
+
+_PRESETS = {
+    "none": NoiseModel(),
+    "research": NoiseModel(
+        accelerometer_density=0.2 * _MILLI_G,
+        accelerometer_bias=3 * _MILLI_G,
+        gyroscope_density=radians(0.01),
+        gyroscope_bias=radians(0.2),
+        scale_error=0.002,
+        misalignment_rad=radians(1.0),
+        latency_s=0.005,
+    ),
+    "consumer": NoiseModel(
+        accelerometer_density=2 * _MILLI_G,
+        accelerometer_bias=20 * _MILLI_G,
+        gyroscope_density=radians(0.05),
+        gyroscope_bias=radians(1.0),
+        scale_error=0.01,
+        misalignment_rad=radians(5.0),
+        latency_s=0.020,
+    ),
+}
+
+
+def noise_presets() -> dict[str, NoiseModel]:
+    """Returns the named models: none, research (calibrated, strapped well) and consumer."""
+    return dict(_PRESETS)
+
+
+def noisy(take: Take, model: NoiseModel, seed: int = 0) -> Take:
+    """Returns the take as such sensors would have recorded it; the same seed gives the same."""
+    if model == NoiseModel():
+        return take
+    streams = np.random.default_rng(seed).spawn(len(take.sensors))
+    sensors = {
+        site: _noisy_record(record, model, rng)
+        for (site, record), rng in zip(take.sensors.items(), streams, strict=True)
+    }
+    return Take(sensors, take.comments)
+
+
+def _noisy_record(
+    record: SensorRecord, model: NoiseModel, rng: np.random.Generator
+) -> SensorRecord:
+    axis = rng.normal(size=3)
+    axis /= np.linalg.norm(axis)
+    R_true_sensor = _rotation(axis, model.misalignment_rad)
+    rate_hz = 1.0 / float(np.median(np.diff(record.times_s))) if len(record.times_s) > 1 else 1.0
+    white = np.sqrt(0.5 * rate_hz)  # the standard deviation that a density of 1 gives a sample
+    scale = 1.0 + model.scale_error * rng.normal(size=3)
+    bias = model.accelerometer_bias * rng.normal(size=3)
+    force = scale * (record.specific_force @ R_true_sensor) + bias
+    force = force + model.accelerometer_density * white * rng.normal(size=force.shape)
+    rates = record.angular_velocity
+    if rates is not None:
+        rates = rates @ R_true_sensor + model.gyroscope_bias * rng.normal(size=3)
+        rates = rates + model.gyroscope_density * white * rng.normal(size=rates.shape)
+    orientation = record.orientation
+    if orientation is not None:
+        orientation = _times(orientation, _quaternion(axis, model.misalignment_rad))
+    return SensorRecord(record.times_s + model.latency_s, force, rates, orientation)
+
+
+def _rotation(axis: Floats, angle: float) -> Floats:
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross))
+
+
+def _quaternion(axis: Floats, angle: float) -> Floats:
+    return np.concatenate([[np.cos(angle / 2)], np.sin(angle / 2) * axis])
+
+
+def _times(left: Floats, right: Floats) -> Floats:
+    """Returns the quaternions (T, 4) times one quaternion, w x y z."""
+    w, v = left[:, :1], left[:, 1:]
+    return np.concatenate(
+        [w * right[0] - v @ right[1:, None], w * right[1:] + right[0] * v + np.cross(v, right[1:])],
+        axis=1,
+    )
