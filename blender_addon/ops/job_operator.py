@@ -81,7 +81,7 @@ class JobOperator:
         compat.redraw_views(context)
         if not compat.HAS_PROGRESS_BAR:
             context.window_manager.progress_update(int(100 * job.fraction))
-        if job.is_running or compat.is_busy(context, self.bl_idname):
+        if job.is_running or compat.is_busy(context):
             return {"PASS_THROUGH"}
         self._end(context)
         try:

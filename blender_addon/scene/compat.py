@@ -14,6 +14,8 @@ SLOT_NAME = "Sparse Mocap"  # one name, so that takes can be swapped on an armat
 
 HAS_PROGRESS_BAR = "progress" in UILayout.bl_rna.functions
 
+_DRAGS = ("TRANSFORM_OT_", "SCULPT_OT_", "PAINT_OT_", "GPENCIL_OT_", "GREASE_PENCIL_OT_")
+
 NewCurve = Callable[[str, int, str], FCurve]
 """Makes the curve of a data path and array index in the group of that name."""
 
@@ -58,16 +60,10 @@ def is_rendering() -> bool:
     return bpy.app.is_job_running("RENDER")
 
 
-def is_busy(context: Context, own: str) -> bool:
-    """Whether nothing may be changed just now: a render, or another tool the user is amid of."""
-    others: Any = getattr(context.window, "modal_operators", ())
-    return is_rendering() or any(_python_id(other.bl_idname) != own for other in others)
-
-
-def _python_id(identifier: str) -> str:
-    """object.delete for OBJECT_OT_delete."""
-    module, _, name = identifier.partition("_OT_")
-    return f"{module.lower()}.{name}" if name else identifier
+def is_busy(context: Context) -> bool:
+    """Whether nothing may be changed just now: a render, or a stroke or drag of the user's."""
+    at_work: Any = getattr(context.window, "modal_operators", ())
+    return is_rendering() or any(tool.bl_idname.startswith(_DRAGS) for tool in at_work)
 
 
 def redraw_views(context: Context) -> None:

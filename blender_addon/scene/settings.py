@@ -35,11 +35,17 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
         name="Leave out",
         description="File names to leave out, separated by commas, for example: *_02.bvh, test*",
     )
+    is_build_open: BoolProperty(
+        name="Build from motion files", description="Make another motion database"
+    )
     take: StringProperty(name="Take", description="The recorded take (.csv) to reconstruct")
     preset: EnumProperty(name="Preset", description="How to reconstruct", items=PRESETS)
     offline: BoolProperty(
         name="Offline",
-        description="Look at the whole take for every frame: smoother, and slower",
+        description=(
+            "Online reconstructs as a live performance would, from what was read so far. "
+            "Offline looks at the whole take for every frame: closer, and slower"
+        ),
     )
     start_frame: FloatProperty(
         name="Start frame",

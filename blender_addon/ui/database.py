@@ -10,7 +10,7 @@ from ..scene.settings import SPARSEMOCAP_PG_settings, settings_of
 from ..session.core import missing_reason
 from ..session.database import BUILDING, databases, default_output
 from . import text
-from .step import StepPanel, action_button, redraw_soon
+from .step import StepPanel, action_button, job_is_running, redraw_soon, tick
 
 
 class SPARSEMOCAP_PT_database(StepPanel, Panel):
@@ -29,48 +29,52 @@ class SPARSEMOCAP_PT_database(StepPanel, Panel):
         row = self.layout.row(align=True)
         row.prop(settings, "database", text="")
         row.operator("sparse_mocap.open_database", text="", icon="FILE_FOLDER")
-        if not settings.database:
-            text.paragraph(
-                self.layout, context, "Open a motion database, or build one below", icon="INFO"
-            )
-            return
-        _contents(self.layout, context, settings)
+        if settings.database:
+            _contents(self.layout, context, settings)
+        else:
+            hint = "Open a motion database (.smdb), or build one:"
+            text.paragraph(self.layout, context, hint, icon="INFO")
+        _build_form(self.layout, context, settings, is_first=not settings.database)
+
+    def draw_header_preset(self, context: Context) -> None:
+        """A tick when the step is done."""
+        tick(self.layout, databases, bpy.path.abspath(settings_of(context.scene).database))
 
 
-class SPARSEMOCAP_PT_build(StepPanel, Panel):
-    """A new database from motion files."""
-
-    bl_idname = "SPARSEMOCAP_PT_build"
-    bl_label = "Build from Motion Files"
-    bl_parent_id = "SPARSEMOCAP_PT_database"
-
-    @classmethod
-    def poll(cls, context: Context) -> bool:
-        """Only where it can be done."""
-        return not missing_reason()
-
-    def draw(self, context: Context) -> None:
-        """What to build from, and the button."""
-        settings = settings_of(context.scene)
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        layout.prop(settings, "source")
-        row = layout.row(align=True)
-        row.prop(settings, "output")
-        row.operator("sparse_mocap.choose_output", text="", icon="FILE_FOLDER")
-        layout.prop(settings, "exclude")
-        layout.prop(settings, "mirror", text="Mirror motions")
-        if settings.source and not settings.output:
-            path = default_output(bpy.path.abspath(settings.source))
-            text.paragraph(layout, context, f"Writes {path}")
-        action_button(
-            layout,
-            "sparse_mocap.build_database",
-            "FILE_REFRESH",
-            BUILDING,
-            is_ready=bool(settings.source),
-        )
+def _build_form(
+    layout: UILayout, context: Context, settings: SPARSEMOCAP_PG_settings, *, is_first: bool
+) -> None:
+    """A new database from motion files: folded away once there is one."""
+    box = layout.box()
+    is_open = is_first or settings.is_build_open or job_is_running(BUILDING)
+    row = box.row()
+    row.alignment = "LEFT"
+    if is_first:
+        row.label(text="Build from motion files")
+    else:
+        icon = "TRIA_DOWN" if is_open else "TRIA_RIGHT"
+        row.prop(settings, "is_build_open", icon=icon, emboss=False)
+    if not is_open:
+        return
+    column = box.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    column.prop(settings, "source")
+    row = column.row(align=True)
+    row.prop(settings, "output")
+    row.operator("sparse_mocap.choose_output", text="", icon="FILE_FOLDER")
+    column.prop(settings, "exclude")
+    column.prop(settings, "mirror", text="Mirror too")
+    if settings.source and not settings.output:
+        path = default_output(bpy.path.abspath(settings.source))
+        text.paragraph(box, context, f"Writes {path}")
+    action_button(
+        box,
+        "sparse_mocap.build_database",
+        "FILE_REFRESH",
+        BUILDING,
+        is_ready=bool(settings.source),
+    )
 
 
 def _contents(layout: UILayout, context: Context, settings: SPARSEMOCAP_PG_settings) -> None:
@@ -85,12 +89,12 @@ def _contents(layout: UILayout, context: Context, settings: SPARSEMOCAP_PG_setti
         text.facts(
             layout,
             [
-                ("Clips", f"{database.num_clips:,} of {database.num_sources:,} files"),
-                ("Motion", f"{database.minutes:.1f} min"),
+                ("Clips", f"{database.num_clips:,}"),
+                ("Length", f"{database.minutes:.1f} min"),
                 ("Rate", f"{database.rate_hz:g} Hz"),
                 ("Size", text.size(database.size_bytes)),
             ],
         )
 
 
-CLASSES = (SPARSEMOCAP_PT_database, SPARSEMOCAP_PT_build)
+CLASSES = (SPARSEMOCAP_PT_database,)

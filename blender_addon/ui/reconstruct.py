@@ -33,12 +33,14 @@ class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         layout.row().prop(settings, "preset", expand=True)
-        row = layout.row(align=True, heading="Look at")
-        row.prop(settings, "offline", text="Past only", toggle=True, invert_checkbox=True)
-        row.prop(settings, "offline", text="Whole take", toggle=True)
+        row = layout.row(align=True, heading="Mode")
+        row.prop(settings, "offline", text="Online", toggle=True, invert_checkbox=True)
+        row.prop(settings, "offline", text="Offline", toggle=True)
         layout.prop(settings, "start_frame")
         if any(is_ours(obj) for obj in context.view_layer.objects):
-            layout.prop(settings, "reuse_armature")
+            row = layout.row()
+            row.use_property_split = False
+            row.prop(settings, "reuse_armature")
         is_ready = bool(settings.database and settings.take)
         action_button(
             layout, "sparse_mocap.reconstruct", "ARMATURE_DATA", RECONSTRUCTING, is_ready=is_ready
@@ -54,10 +56,12 @@ def _performed(layout: UILayout, context: Context) -> None:
     action = performed_action(context.view_layer.objects.active)
     facts = None if action is None else facts_of(action)
     if facts is not None:
+        first, last = action.frame_range
         rows = [
             ("Action", action.name),
             ("Duration", text.duration(facts.duration_s)),
-            ("Sensor misfit", f"{facts.misfit_mps2:.2f} m/s²"),
+            ("Frames", f"{first:.0f} to {last:.0f}"),
+            ("Misfit", f"{facts.misfit_mps2:.2f} m/s²"),
         ]
         text.facts(layout, rows)
         if facts.is_guess:

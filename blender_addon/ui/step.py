@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
 from bpy.types import UILayout
 
 from ..scene import compat
 from ..session import job as jobs
 from ..session.job import Job
+from ..session.opened import Shelf
 
 _REDRAW_S = 0.1
 
@@ -21,12 +24,24 @@ class StepPanel:
     bl_category = "Sparse Mocap"
 
 
+def tick(layout: UILayout, shelf: Shelf[Any], path: str) -> None:
+    """Show in a step's header that its file is there."""
+    if path and shelf.peek(path).value is not None:
+        layout.label(text="", icon="CHECKMARK")
+
+
+def job_is_running(label: str) -> bool:
+    """Whether the job of that label is at work."""
+    job = jobs.current()
+    return job is not None and job.label == label
+
+
 def action_button(
     layout: UILayout, operator: str, icon: str, job_label: str, *, is_ready: bool
 ) -> None:
     """The step's main button, or the progress of what it started in its place."""
     job = jobs.current()
-    if job is not None and job.label == job_label:
+    if job is not None and job_is_running(job_label):
         _progress(layout, job)
         return
     row = layout.row()
@@ -38,17 +53,16 @@ def action_button(
 def _progress(layout: UILayout, job: Job) -> None:
     row = layout.row(align=True)
     row.scale_y = 1.5
-    percent = f"{job.label} {job.fraction:.0%}"
+    percent = f"{job.fraction:.0%}"
     if job.is_cancelled:
-        row.label(text="Stopping")
+        row.label(text="Stopping", icon="SORTTIME")
     elif compat.HAS_PROGRESS_BAR:
         row.progress(factor=job.fraction, text=percent)
     else:
         row.label(text=percent, icon="SORTTIME")
     row.operator("sparse_mocap.cancel", text="", icon="X")
-    if job.what and not job.is_cancelled:
-        layout.label(text=job.what)
-    layout.label(text="Esc cancels")
+    what = job.what if job.what.lower() not in job.label.lower() else ""
+    layout.label(text=what or f"{job.label}: Esc cancels")
 
 
 def redraw_soon() -> None:

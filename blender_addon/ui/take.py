@@ -10,7 +10,7 @@ from ..scene.settings import settings_of
 from ..session.core import missing_reason
 from ..session.take import takes
 from . import text
-from .step import StepPanel, redraw_soon
+from .step import StepPanel, redraw_soon, tick
 
 
 class SPARSEMOCAP_PT_take(StepPanel, Panel):
@@ -38,6 +38,10 @@ class SPARSEMOCAP_PT_take(StepPanel, Panel):
                 self.layout, context, "Load what the sensors recorded (.csv)", icon="INFO"
             )
 
+    def draw_header_preset(self, context: Context) -> None:
+        """A tick when the step is done."""
+        tick(self.layout, takes, bpy.path.abspath(settings_of(context.scene).take))
+
 
 def _contents(layout: UILayout, context: Context, path: str) -> None:
     entry = takes.peek(path)
@@ -52,11 +56,12 @@ def _contents(layout: UILayout, context: Context, path: str) -> None:
             layout,
             [
                 ("Duration", text.duration(take.duration_s)),
-                ("Sample rate", f"{take.rate_hz:.4g} Hz"),
+                ("Rate", f"{take.rate_hz:.4g} Hz"),
                 ("Sensors", str(len(take.sensors))),
-                *(("", name.replace("_", " ")) for name in take.sensors),
             ],
         )
+        names = ", ".join(name.replace("_", " ") for name in take.sensors)
+        text.paragraph(layout, context, names.capitalize())
 
 
 CLASSES = (SPARSEMOCAP_PT_take,)

@@ -9,13 +9,15 @@ from bpy.types import Context, UILayout
 
 _CHARACTER_PX = 6.4  # of the interface font, on average
 _MARGIN_PX = 50.0
+_ICON_PX = 24.0
 
 
 def paragraph(layout: UILayout, context: Context, text: str, icon: str = "NONE") -> None:
     """Show the text over as many lines as the sidebar's width asks for."""
     scale = context.preferences.system.ui_scale
     width = context.region.width / scale if context.region is not None else 260.0
-    lines = textwrap.wrap(text, max(int((width - _MARGIN_PX) / _CHARACTER_PX), 16)) or [""]
+    room = width - _MARGIN_PX - (0.0 if icon == "NONE" else _ICON_PX)
+    lines = textwrap.wrap(text, max(int(room / _CHARACTER_PX), 16)) or [""]
     column = layout.column(align=True)
     column.scale_y = 0.8
     for index, line in enumerate(lines):

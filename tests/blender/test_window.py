@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The modal operators need a window: another Blender with one, on the display there is."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import bpy
+from support import Skipped, library
+
+SCRIPT = Path(__file__).parent / "window_script.py"
+
+
+def _in_window(scenario: str, tmp_path: Path) -> None:
+    if not bpy.app.binary_path:
+        raise Skipped("a bpy module opens no window")
+    if not os.environ.get("DISPLAY"):
+        raise Skipped("there is no display")
+    options = ["--factory-startup", "-noaudio", "--enable-event-simulate"]
+    files = [library().motions, library().database, library().take, tmp_path]
+    done = subprocess.run(
+        [bpy.app.binary_path, *options, "--python", SCRIPT, "--", scenario, *map(str, files)],
+        env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"},
+        capture_output=True,
+        text=True,
+        timeout=100,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "Traceback" not in done.stdout + done.stderr, done.stdout + done.stderr
+
+
+def test_modal_reconstruction_is_one_undo_step(tmp_path):
+    _in_window("reconstruct", tmp_path)
+
+
+def test_escape_leaves_no_file(tmp_path):
+    _in_window("escape", tmp_path)
+
+
+def test_cancel_button_leaves_no_file(tmp_path):
+    _in_window("cancel", tmp_path)
+
+
+def test_undo_meanwhile_does_no_harm(tmp_path):
+    _in_window("undo", tmp_path)
+
+
+def test_another_file_meanwhile_ends_the_job(tmp_path):
+    _in_window("load", tmp_path)
+
+
+def test_unregister_meanwhile_ends_the_job(tmp_path):
+    _in_window("unregister", tmp_path)

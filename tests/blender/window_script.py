@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One scenario in a Blender with a window; ends it with code 0 when all is as it should be.
+
+window_script.py -- SCENARIO MOTIONS DATABASE TAKE FOLDER
+"""
+
+import os
+import sys
+import time
+import traceback
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import bpy
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+sys.path.append(str(ROOT / "bindings"))
+
+import blender_addon  # noqa: E402 - found by the lines above
+from blender_addon.session import job as jobs  # noqa: E402
+
+SCENARIO, MOTIONS, DATABASE, TAKE, FOLDER = sys.argv[sys.argv.index("--") + 1 :]
+TIMEOUT_S = 60.0
+Steps = Iterator[float]
+
+
+def slow_down(pause_s: float) -> None:
+    """Let every progress of a job take that long, so that it runs while something happens."""
+    on_progress = jobs.Job._on_progress
+
+    def slow(self: jobs.Job, *args: object) -> bool:
+        time.sleep(pause_s)
+        return on_progress(self, *args)
+
+    jobs.Job._on_progress = slow
+
+
+def view() -> dict[str, object]:
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    return {"window": window, "area": area, "region": region}
+
+
+def start(operator: Callable[..., set[str]], **options: object) -> jobs.Job:
+    with bpy.context.temp_override(**view()):
+        assert operator("INVOKE_DEFAULT", True, **options) == {"RUNNING_MODAL"}
+    job = jobs.current()
+    assert job is not None
+    return job
+
+
+def start_building() -> jobs.Job:
+    slow_down(1.0)
+    path = str(Path(FOLDER) / "new.smdb")
+    return start(bpy.ops.sparse_mocap.build_database, source=MOTIONS, filepath=path, mirror=True)
+
+
+def until(is_done: Callable[[], bool]) -> Steps:
+    begin = time.monotonic()
+    while not is_done():
+        assert time.monotonic() - begin < TIMEOUT_S, "nothing happened"
+        yield 0.05
+
+
+def undo() -> None:
+    with bpy.context.temp_override(**view()):
+        bpy.ops.ed.undo()
+
+
+def files() -> list[str]:
+    return sorted(path.name for path in Path(FOLDER).iterdir())
+
+
+def choose_files() -> None:
+    settings = bpy.context.scene.sparse_mocap
+    settings.database, settings.take = DATABASE, TAKE
+    with bpy.context.temp_override(**view()):
+        bpy.ops.ed.undo_push(message="files chosen")
+
+
+def reconstruct() -> Steps:
+    choose_files()
+    before = [item.name for item in bpy.data.objects]
+    start(bpy.ops.sparse_mocap.reconstruct)
+    yield from until(lambda: len(bpy.data.actions) == 1)
+    yield 0.3
+    assert bpy.context.view_layer.objects.active.type == "ARMATURE"
+    undo()
+    yield 0.1
+    assert [item.name for item in bpy.data.objects] == before
+    assert not bpy.data.actions
+    assert not bpy.data.armatures
+    assert bpy.context.scene.sparse_mocap.take == TAKE
+
+
+def escape() -> Steps:
+    job = start_building()
+    yield 0.15
+    assert job.is_running
+    window = bpy.context.window_manager.windows[0]
+    for value in ("PRESS", "RELEASE"):
+        window.event_simulate(type="ESC", value=value, x=200, y=200)
+        yield 0.05
+    yield from until(lambda: not job.is_running)
+    yield 0.3
+    assert job.is_cancelled
+    assert files() == []
+    assert bpy.context.scene.sparse_mocap.database == ""
+
+
+def cancel() -> Steps:
+    job = start_building()
+    yield 0.15
+    assert bpy.ops.sparse_mocap.cancel() == {"FINISHED"}
+    yield from until(lambda: not job.is_running)
+    yield 0.3
+    assert files() == []
+
+
+def undo_meanwhile() -> Steps:
+    slow_down(0.05)
+    choose_files()
+    bpy.data.objects.new("extra", None)
+    with bpy.context.temp_override(**view()):
+        bpy.ops.ed.undo_push(message="extra")
+    job = start(bpy.ops.sparse_mocap.reconstruct)
+    yield 0.2
+    assert job.is_running
+    undo()
+    yield from until(lambda: len(bpy.data.actions) == 1)
+    assert "extra" not in bpy.data.objects
+    assert bpy.context.view_layer.objects.active.animation_data.action == bpy.data.actions[0]
+
+
+def load_meanwhile() -> Steps:
+    job = start_building()
+    yield 0.15
+    assert job.is_running
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    assert not job.is_running
+    yield 0.5
+    assert jobs.current() is None
+    assert files() == []
+
+
+def unregister_meanwhile() -> Steps:
+    job = start_building()
+    yield 0.15
+    blender_addon.unregister()
+    assert not job.is_running
+    yield 0.5
+    assert files() == []
+    blender_addon.register()
+
+
+SCENARIOS = {
+    "reconstruct": reconstruct,
+    "escape": escape,
+    "cancel": cancel,
+    "undo": undo_meanwhile,
+    "load": load_meanwhile,
+    "unregister": unregister_meanwhile,
+}
+
+
+def tick() -> float | None:
+    try:
+        return next(steps)
+    except StopIteration:
+        code = 0
+    except BaseException:
+        traceback.print_exc()
+        code = 1
+    sys.stdout.flush()
+    os._exit(code)
+
+
+bpy.context.preferences.view.show_splash = False
+blender_addon.register()
+steps = SCENARIOS[SCENARIO]()
+bpy.app.timers.register(tick, persistent=True, first_interval=1.0)
