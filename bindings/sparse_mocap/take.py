@@ -154,4 +154,4 @@ def _is_silent(times_s: Floats, wanted_s: Floats) -> NDArray[np.bool_]:
         np.minimum(wanted_s - before_s, after_s - wanted_s),
         after_s - before_s,
     )
-    return np.asarray(is_between & (gap_s > LONGEST_GAP_S))
+    return np.asarray(is_between & (gap_s > LONGEST_GAP_S + slack))

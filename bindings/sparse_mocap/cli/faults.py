@@ -31,6 +31,8 @@ def as_faults() -> Iterator[None]:
     """Turns the errors that an input, a setting or the system causes into faults."""
     try:
         yield
+    except (click.ClickException, click.exceptions.Exit, click.Abort):
+        raise
     except OSError as error:
         if isinstance(error, BrokenPipeError):
             raise
@@ -62,6 +64,7 @@ def _told(error: OSError) -> str:
 
 
 def _missing(error: ImportError) -> str:
-    if error.name in ("matplotlib", "rich"):
-        return f"this needs {error.name}; install it with: pip install 'sparse-mocap[cli]'"
+    package = (error.name or "").partition(".")[0]
+    if package in ("matplotlib", "rich"):
+        return f"this needs {package}; install it with: pip install 'sparse-mocap[cli]'"
     return str(error)

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the tests share: a small generated library, its database, and ways to run commands."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import sparse_mocap
+from click.testing import CliRunner, Result
+from sparse_mocap.cli.app import app
+from sparse_mocap.demo.generator import generate_library, generate_performance
+
+ROOT = Path(__file__).resolve().parents[2]
+ACTORS = ("ada", "bruno")
+CLIPS = ("walk_01", "walk_02", "squat_01", "squat_02", "kickleft_01", "kickright_01")
+
+
+@pytest.fixture(scope="session")
+def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Twelve generated clips: two actors, four classes, two of which have one clip an actor."""
+    everything = tmp_path_factory.mktemp("everything")
+    generate_library(everything)
+    folder = tmp_path_factory.mktemp("library")
+    for actor in ACTORS:
+        for clip in CLIPS:
+            shutil.copy(everything / f"{actor}_{clip}.bvh", folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def performance(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return generate_performance(tmp_path_factory.mktemp("performance") / "performance.bvh")
+
+
+@pytest.fixture(scope="session")
+def database_path(library: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("database") / "library.smdb"
+    sparse_mocap.build_database([library], path, mirror=True)
+    return path
+
+
+@pytest.fixture(scope="session")
+def database(database_path: Path) -> sparse_mocap.MotionDatabase:
+    return sparse_mocap.MotionDatabase(database_path)
+
+
+@pytest.fixture(scope="session")
+def take_path(performance: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    motion, _ = sparse_mocap.standard_motion(sparse_mocap.read_motion(performance)[0])
+    sites = ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
+    path = tmp_path_factory.mktemp("take") / "take.csv"
+    sparse_mocap.write_take(path, sparse_mocap.simulated(motion, sites, 100.0))
+    return path
+
+
+@pytest.fixture(scope="session")
+def real_data() -> Path:
+    """The folder of recorded motion capture, which is no part of the repository."""
+    named = os.environ.get("SPARSE_MOCAP_DATA")
+    folder = Path(named) if named else ROOT.parent / "shared" / "data"
+    if not folder.is_dir():
+        pytest.skip(f"no recorded motion capture at {folder}; SPARSE_MOCAP_DATA may name it")
+    return folder
+
+
+@pytest.fixture
+def cli() -> Callable[..., Result]:
+    """Runs a command in this process."""
+
+    def call(*arguments: object) -> Result:
+        return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+    return call
+
+
+@pytest.fixture
+def command() -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Runs a command as a process of its own."""
+
+    def call(*arguments: object) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-m", "sparse_mocap", *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+            stdin=subprocess.DEVNULL,
+        )
+
+    return call

@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The evaluation: its protocol, its figures, and that they are what anyone would compute."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import Result
+from sparse_mocap import FormatError, MotionDatabase
+from sparse_mocap.evaluation import (
+    BASELINES,
+    Settings,
+    choose_tests,
+    evaluate,
+    excluded_clips,
+    frame_errors,
+    interpolated,
+    joint_errors,
+    mean_jerk,
+    motion_files,
+    source_path,
+)
+
+Cli = Callable[..., Result]
+
+
+@dataclass
+class FakeClip:
+    name: str
+    actor: str
+    motion_class: str
+    source: str
+    source_hash: str
+    is_mirrored: bool = False
+    is_reversed: bool = False
+
+
+def fake_clips() -> list[FakeClip]:
+    clips = []
+    for actor, kind, take in (
+        ("a", "walk", 2), ("a", "walk", 1), ("a", "hop", 1), ("b", "walk", 1), ("b", "hop", 1),
+    ):  # fmt: skip
+        name = f"{actor}_{kind}_{take}"
+        for mirrored in (False, True):
+            clips.append(FakeClip(name, actor, kind, f"{name}.bvh", name, mirrored))
+    clips.append(FakeClip("copy", "b", "walk", "copy.bvh", "a_walk_1"))
+    return clips
+
+
+def names(clips: list[FakeClip], indices: list[int]) -> set[tuple[str, bool]]:
+    return {(clips[i].name, clips[i].is_mirrored) for i in indices}
+
+
+def test_one_clip_of_each_actor_and_class_is_tested() -> None:
+    clips = fake_clips()
+    tests = [clips[i].name for i in choose_tests(clips)]
+    assert tests == ["a_hop_1", "a_walk_1", "b_hop_1", "b_walk_1"]
+
+
+def test_a_pattern_on_file_names_chooses_other_tests() -> None:
+    clips = fake_clips()
+    assert [clips[i].name for i in choose_tests(clips, "A_walk*")] == ["a_walk_1", "a_walk_2"]
+    assert choose_tests(clips, "nothing*") == []
+
+
+@pytest.mark.parametrize("scenario", [1, 2, 3])
+def test_a_scenario_hides_what_the_paper_says(scenario: int) -> None:
+    clips = fake_clips()
+    test = next(i for i, clip in enumerate(clips) if clip.name == "a_walk_1")
+    hidden = excluded_clips(clips, test, scenario)
+    shown = [i for i in range(len(clips)) if i not in hidden]
+    both = {(name, side) for name in ("a_walk_2", "a_hop_1") for side in (False, True)}
+    others = {(name, side) for name in ("b_walk_1", "b_hop_1") for side in (False, True)}
+    assert names(clips, shown) == {1: both | others, 2: both, 3: others}[scenario]
+
+
+def test_errors_have_their_closed_form() -> None:
+    truth = np.zeros((2, 2, 3))
+    estimate = np.array([[[3.0, 4, 0], [0, 0, 0]], [[0, 0, 1], [0, 1, 0]]])
+    errors = joint_errors(truth, estimate)
+    np.testing.assert_allclose(errors, [[5, 0], [1, 1]])
+    np.testing.assert_allclose(frame_errors(errors), [np.sqrt(12.5), 1])
+
+
+def test_jerk_is_the_third_derivative() -> None:
+    times = np.arange(50) / 25
+    cubic = np.zeros((50, 1, 3))
+    cubic[:, 0, 1] = 2.0 * times**3
+    assert mean_jerk(cubic, 25.0) == pytest.approx(12.0 / 1000)
+    assert np.isnan(mean_jerk(cubic[:3], 25.0))
+
+
+def test_values_are_interpolated_linearly() -> None:
+    values = np.array([[0.0, 10.0], [1.0, 20.0]])
+    np.testing.assert_allclose(
+        interpolated(np.array([0.0, 2.0]), values, np.array([0.5, 2.0])), [[0.25, 12.5], [1, 20]]
+    )
+
+
+def test_a_source_is_found_unless_it_is_unclear(tmp_path: Path) -> None:
+    (tmp_path / "sub").mkdir()
+    for name in ("a.bvh", "sub/a.bvh", "sub/B.BVH", "x.asf"):
+        (tmp_path / name).touch()
+    files = motion_files(tmp_path)
+    clip = fake_clips()[0]
+    clip.source = "B.BVH"
+    assert source_path(files, clip) == tmp_path / "sub" / "B.BVH"
+    for clip.source in ("a.bvh", "gone.bvh"):
+        with pytest.raises(FormatError, match=clip.source):
+            source_path(files, clip)
+
+
+@pytest.fixture(scope="module")
+def found(library: Path, tmp_path_factory: pytest.TempPathFactory, cli_once: Cli) -> dict:
+    folder = tmp_path_factory.mktemp("evaluation")
+    result = cli_once(
+        "evaluate", "--database-source", library, "--scenario", 1, "--offline",
+        "--json", folder / "e.json", "--plots", folder / "plots", "--cache", folder / "cache",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    told = json.loads((folder / "e.json").read_text(encoding="utf-8"))
+    return told | {"folder": folder, "stdout": result.stdout}
+
+
+@pytest.fixture(scope="module")
+def cli_once() -> Cli:
+    from click.testing import CliRunner
+    from sparse_mocap.cli.app import app
+
+    return lambda *words: CliRunner().invoke(app, [str(word) for word in words])
+
+
+def test_every_method_is_tested_on_every_clip(found: dict) -> None:
+    methods = ["default", "default, offline", "paper", "paper, offline", *BASELINES]
+    assert list(found["methods"]) == methods
+    assert len(found["tests"]) == 2 * 4
+    for test in found["tests"]:
+        assert list(test["error_cm"]) == methods
+        assert test["excluded_clips"] == 2
+    assert found["left_out"] == []
+
+
+def test_the_figures_are_means_over_clips(found: dict) -> None:
+    for name, method in found["methods"].items():
+        errors = [test["error_cm"][name] for test in found["tests"]]
+        assert method["mean_cm"] == pytest.approx(np.mean(errors))
+        assert method["median_cm"] == pytest.approx(np.median(errors))
+        assert set(method["class_errors_cm"]) == {"walk", "squat", "kickleft", "kickright"}
+        assert len(method["joint_errors_cm"]) == 21
+        assert sum(method["histogram"]["frames"]) > 100
+        assert (method["latency_ms"] is None) == (name not in ("default", "paper"))
+
+
+def test_the_oracle_bounds_what_the_database_can_give(found: dict) -> None:
+    methods = found["methods"]
+    assert methods["oracle"]["mean_cm"] < methods["playback"]["mean_cm"]
+    assert methods["oracle"]["mean_cm"] < methods["window of 10"]["mean_cm"]
+    assert methods["mean pose"]["jerk_kmps3"] == 0
+    assert 0 < methods["default"]["mean_cm"] < methods["mean pose"]["mean_cm"]
+
+
+def test_an_evaluation_is_told_drawn_and_kept(found: dict) -> None:
+    for word in ("oracle", "latency (ms)", "kickleft", "rwrist"):
+        assert word in found["stdout"]
+    pictures = sorted((found["folder"] / "plots").iterdir())
+    assert [path.name for path in pictures] == [
+        f"scenario1_{what}.png" for what in ("classes", "histogram", "joints")
+    ]
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in pictures)
+    assert len(list((found["folder"] / "cache").glob("*.smdb"))) == 1
+
+
+@pytest.mark.parametrize("scenario", [2, 3])
+def test_other_scenarios_hide_more(database: MotionDatabase, library: Path, scenario: int) -> None:
+    settings = Settings(scenario, presets=("default",), tests="ada_walk_01.bvh")
+    result = evaluate(database, library, settings)
+    assert result.tests[0].num_excluded == {2: 2 + 12, 3: 12}[scenario]
+
+
+def test_an_actor_without_other_clips_is_left_out_of_scenario_2(
+    library: Path, tmp_path: Path, cli: Cli
+) -> None:
+    (tmp_path / "ada_walk_01.bvh").write_bytes((library / "ada_walk_01.bvh").read_bytes())
+    for name in ("bruno_walk_01.bvh", "bruno_squat_01.bvh"):
+        (tmp_path / name).write_bytes((library / name).read_bytes())
+    result = cli("evaluate", "--database-source", tmp_path, "--scenario", 2, "--preset", "default")
+    assert result.exit_code == 0, result.output
+    assert "warning: not tested: ada_walk_01" in result.stderr
+    assert "2 clips" in result.stdout
+
+
+def independent_error(truth: Path, result: Path) -> float:
+    """The mean error in cm of one positions file against another, by nothing of the package."""
+    tables = []
+    for path in (truth, result):
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        tables.append((rows[0], np.array(rows[1:], float)))
+    (head, one), (other_head, two) = tables
+    assert head == other_head
+    inside = one[one[:, 0] <= two[-1, 0] + 1e-6]
+    columns = [np.interp(inside[:, 0], two[:, 0], two[:, k]) for k in range(1, two.shape[1])]
+    square = ((np.stack(columns, 1) - inside[:, 1:]) ** 2).reshape(len(inside), -1, 3).sum(2)
+    return float(100 * np.sqrt(square.mean(1)).mean())
+
+
+@pytest.mark.parametrize("preset", ["default", "paper"])
+def test_hidden_is_as_good_as_absent(
+    library: Path, database: MotionDatabase, tmp_path: Path, cli: Cli, preset: str
+) -> None:
+    """The evaluation's figure is that of the commands on a database built without the clip."""
+    name = "bruno_walk_01.bvh"
+    settings = Settings(1, presets=(preset,), tests=name)
+    (test,) = evaluate(database, library, settings).tests
+    path = {what: tmp_path / what for what in ("db.smdb", "take.csv", "o.bvh", "o.csv", "t.csv")}
+    for words in (
+        ("database", "build", library, "-o", path["db.smdb"], "--mirror", "--exclude", name),
+        ("simulate", library / name, "-o", path["take.csv"]),
+        ("reconstruct", "--database", path["db.smdb"], path["take.csv"], "-o", path["o.bvh"],
+         "--preset", preset, "--positions", path["o.csv"]),
+        ("convert", library / name, "-o", path["t.csv"], "--skeleton", path["db.smdb"],
+         "--fps", 25),
+    ):  # fmt: skip
+        result = cli(*words)
+        assert result.exit_code == 0, result.output
+    error = independent_error(path["t.csv"], path["o.csv"])
+    assert test.results[preset].mean_cm == pytest.approx(error, abs=0.02)
+
+
+def test_noise_is_part_of_the_evaluation(database: MotionDatabase, library: Path) -> None:
+    clean, dirty = (
+        evaluate(
+            database,
+            library,
+            Settings(1, presets=("default",), tests="bruno_walk_01.bvh", noise=noise),
+        )
+        for noise in ("none", "consumer")
+    )
+    assert clean.clip_means_cm("oracle") == dirty.clip_means_cm("oracle")
+    assert clean.clip_means_cm("default") != dirty.clip_means_cm("default")

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files that are there whole or not at all, and positions files."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sparse_mocap import FormatError, read_positions, write_positions
+from sparse_mocap.files import replaced, write_text
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
+    path = tmp_path / "file.txt"
+    write_text(path, "old")
+
+    def fail() -> None:
+        with replaced(path) as temporary:
+            temporary.write_text("half", encoding="utf-8")
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        fail()
+    assert path.read_text(encoding="utf-8") == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_write_replaces_and_keeps_permissions(tmp_path: Path) -> None:
+    path = tmp_path / "file.txt"
+    write_text(path, "old")
+    path.chmod(0o640)
+    write_text(path, "new\n")
+    assert path.read_bytes() == b"new\n"
+    assert path.stat().st_mode & 0o777 == 0o640
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_what_cannot_be_written_names_the_file_that_was_meant(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match=r"nowhere/file\.txt"):
+        write_text(tmp_path / "nowhere" / "file.txt", "")
+    with pytest.raises(IsADirectoryError):
+        write_text(tmp_path, "")
+
+
+def test_positions_survive_a_file(tmp_path: Path) -> None:
+    times, joints = np.arange(4) / 25 + 2.0, ["root", "head"]
+    positions = np.random.default_rng(0).normal(size=(4, 2, 3))
+    write_positions(tmp_path / "p.csv", times, joints, positions)
+    again = read_positions(tmp_path / "p.csv")
+    assert again[1] == joints
+    np.testing.assert_allclose(again[0], times, atol=1e-6)
+    np.testing.assert_allclose(again[2], positions, atol=1e-6)
+
+
+def test_a_positions_file_is_plain_csv(tmp_path: Path) -> None:
+    write_positions(tmp_path / "p.csv", [0.5], ["root"], [[[1, 2, 3]]])
+    with open(tmp_path / "p.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    assert rows[0] == ["time_s", "root_x", "root_y", "root_z"]
+    assert [float(value) for value in rows[1]] == [0.5, 1, 2, 3]
+
+
+def test_positions_of_a_wrong_shape_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"must be \(2, 1, 3\), got \(1, 1, 3\)"):
+        write_positions(tmp_path / "p.csv", [0, 1], ["root"], np.zeros((1, 1, 3)))
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("", "is empty"),
+        ("time_s\n0\n", ":1: the header"),
+        ("time_s,root_x,root_z,root_y\n", ":1: the header"),
+        ("time_s,root_x,root_y,root_z\n0,1,2\n", ":2: expected 4 numbers"),
+        ("# x\ntime_s,root_x,root_y,root_z\n0,1,2,three\n", ":3: expected 4 numbers"),
+    ],
+)
+def test_a_bad_positions_file_is_refused(tmp_path: Path, text: str, problem: str) -> None:
+    path = tmp_path / "p.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(FormatError, match=problem):
+        read_positions(path)

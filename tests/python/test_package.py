@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The package's face: what it offers, with and without its compiled core."""
+
+from __future__ import annotations
+
+import ast
+import platform
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import sparse_mocap
+from sparse_mocap import _core
+
+PACKAGE = Path(sparse_mocap.__file__).parent
+
+
+def run_python(code: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+    )
+
+
+def stub() -> ast.Module:
+    return ast.parse((PACKAGE / "_core.pyi").read_text(encoding="utf-8"))
+
+
+def test_every_public_name_is_there() -> None:
+    for name in sparse_mocap.__all__:
+        assert getattr(sparse_mocap, name) is not None
+    assert set(sparse_mocap.__all__) <= set(dir(sparse_mocap))
+
+
+def test_an_unknown_name_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        sparse_mocap.nothing  # noqa: B018
+
+
+def test_the_core_has_every_function_and_class_of_its_stub() -> None:
+    names = [node.name for node in stub().body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
+    assert len(names) > 20
+    assert [name for name in names if not hasattr(_core, name)] == []
+
+
+def test_the_core_has_every_member_of_its_stub() -> None:
+    missing = []
+    for node in stub().body:
+        if not isinstance(node, ast.ClassDef) or node.name.endswith(("Error", "Cancelled")):
+            continue
+        for member in node.body:
+            if isinstance(member, ast.FunctionDef):
+                name = member.name
+            elif isinstance(member, ast.AnnAssign) and isinstance(member.target, ast.Name):
+                name = member.target.id
+            else:
+                continue
+            if not hasattr(getattr(_core, node.name), name):
+                missing.append(f"{node.name}.{name}")
+    assert missing == []
+
+
+def test_without_a_core_one_line_names_this_python() -> None:
+    done = run_python(
+        "import sys; sys.modules['sparse_mocap._core'] = None; import sparse_mocap\n"
+        "try:\n    sparse_mocap.MotionDatabase\nexcept ImportError as error:\n    print(error)"
+    )
+    assert done.stderr == ""
+    assert len(done.stdout.splitlines()) == 1
+    assert f"CPython {platform.python_version()}" in done.stdout
+
+
+def test_the_command_without_a_core_says_so_in_one_line() -> None:
+    done = run_python(
+        "import sys; sys.modules['sparse_mocap._core'] = None\n"
+        "from sparse_mocap.cli import main; sys.exit(main(['database', 'info', 'x']))"
+    )
+    assert done.returncode == 1
+    assert len(done.stderr.splitlines()) == 1
+    assert platform.python_version() in done.stderr
+
+
+def test_the_generator_needs_no_core() -> None:
+    done = run_python(
+        "import sys; sys.modules['sparse_mocap._core'] = None\n"
+        "from sparse_mocap.demo.generator import generate_library; print(generate_library.__name__)"
+    )
+    assert done.stdout.strip() == "generate_library", done.stderr
+
+
+@pytest.mark.parametrize("missing", ["click", "rich"])
+def test_the_command_without_its_extra_says_what_to_install(missing: str) -> None:
+    done = run_python(
+        f"import sys; sys.modules[{missing!r}] = None\n"
+        "from sparse_mocap.cli import main; sys.exit(main(['database', 'info', 'x']))"
+    )
+    assert done.returncode == 1
+    assert len(done.stderr.splitlines()) == 1
+    assert "sparse-mocap[cli]" in done.stderr
