@@ -163,7 +163,7 @@ std::string_view TextScanner::next() {
 }
 
 std::string_view TextScanner::next_on_line() {
-  if (at_line_end()) return {cursor_, 0};
+  if (at_line_end()) return here();
   return next();
 }
 

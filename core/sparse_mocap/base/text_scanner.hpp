@@ -52,7 +52,7 @@ class TextScanner {
   // Takes the character if it comes next on this line.
   void skip_character(char c);
   // The empty token where the scanner stands, as a place for errors.
-  std::string_view here() const { return {cursor_, 0}; }
+  std::string_view here() const { return std::string_view(cursor_, end_).substr(0, 0); }
   bool starts_line(std::string_view token) const;
 
   // The next token as a number; what names it in the error ("3 numbers after OFFSET").
@@ -62,8 +62,9 @@ class TextScanner {
 
   const std::filesystem::path& path() const { return path_; }
   std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - cursor_); }
+  // Where a token of this scanner stands.
   FileLocation location(std::string_view token) const;
-  // Throws FormatError located at the token.
+  // Throws FormatError located at a token of this scanner.
   [[noreturn]] void fail(std::string_view token, const std::string& problem,
                          const std::string& remedy = "") const;
 

@@ -241,7 +241,7 @@ void SectionReader::read_bone(std::string_view begin) {
 void SectionReader::read_bone_item(std::string_view key, AsfBone& bone) {
   if (is_word(key, "name")) {
     bone.token = scanner_.next_on_line();
-    bone.name = checked_name(scanner_, bone.token, warnings_);
+    bone.name = checked_name(scanner_, bone.token, bone.token, warnings_);
   } else if (is_word(key, "direction")) {
     bone.direction = read_vector("3 numbers after direction");
   } else if (is_word(key, "length")) {

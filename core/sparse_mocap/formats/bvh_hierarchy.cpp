@@ -205,19 +205,20 @@ void HierarchyReader::close_block(std::string_view token) {
 
 // Everything on the line before the brace; several words become one.
 std::string HierarchyReader::read_name(std::string_view keyword) {
+  if (scanner_.at_line_end() || scanner_.peek() == "{")
+    scanner_.fail(scanner_.peek(), "the name after " + std::string(keyword) + " is missing");
+  const auto first_word = scanner_.peek();
   std::string name;
   int num_words = 0;
   while (!scanner_.at_line_end() && scanner_.peek() != "{") {
     const auto word = scanner_.next();
     if (word == "}") scanner_.fail(word, "expected a name and '{', got '}'");
-    name += (num_words++ > 0 ? "_" : "") + checked_name(scanner_, word, warnings_);
+    if (num_words++ > 0) name += '_';
+    name += word;
   }
-  if (num_words == 0)
-    scanner_.fail(scanner_.peek(), "the name after " + std::string(keyword) + " is missing");
-  if (num_words > 1) {
-    checked_name(scanner_, name, warnings_);
+  name = checked_name(scanner_, first_word, name, warnings_);
+  if (num_words > 1)
     warn(scanner_.location(keyword), "a name with spaces; read as " + in_quotes(name));
-  }
   return name;
 }
 

@@ -95,16 +95,16 @@ Vec3 lengths_m(TextScanner& scanner, std::string_view what, double unit_m) {
   return lengths;
 }
 
-std::string checked_name(const TextScanner& scanner, std::string_view token,
+std::string checked_name(const TextScanner& scanner, std::string_view token, std::string_view name,
                          std::vector<ReadWarning>& warnings) {
-  if (token.size() > kMaxNameBytes)
-    scanner.fail(token, "a name has " + std::to_string(token.size()) + " bytes, at most " +
+  if (name.size() > kMaxNameBytes)
+    scanner.fail(token, "a name has " + std::to_string(name.size()) + " bytes, at most " +
                             std::to_string(kMaxNameBytes) + " are accepted");
-  auto name = escaped_to_utf8(token);
-  if (name != token)
+  auto usable = escaped_to_utf8(name);
+  if (usable != name)
     warnings.push_back(
-        {scanner.location(token), "the name is not UTF-8; read as " + in_quotes(name)});
-  return name;
+        {scanner.location(token), "the name is not UTF-8; read as " + in_quotes(usable)});
+  return usable;
 }
 
 std::vector<std::string> unique_names(std::vector<std::string> names) {

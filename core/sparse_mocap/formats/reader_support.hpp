@@ -22,9 +22,9 @@ Quat turned_about(const Quat& q, Axis axis, double angle_rad);
 double length_m(TextScanner& scanner, std::string_view what, double unit_m);
 Vec3 lengths_m(TextScanner& scanner, std::string_view what, double unit_m);
 
-// The name with bytes that are not UTF-8 escaped (recorded as a warning). Throws FormatError when
-// it is longer than 255 bytes.
-std::string checked_name(const TextScanner& scanner, std::string_view token,
+// The name that stands at the token, with bytes that are not UTF-8 escaped (recorded as a warning).
+// Throws FormatError when it is longer than 255 bytes.
+std::string checked_name(const TextScanner& scanner, std::string_view token, std::string_view name,
                          std::vector<ReadWarning>& warnings);
 
 // The names with a suffix (_2, _3, ...) at each repetition; distinct names stay as they are.
