@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The three steps without Blender, on the compiled core."""
+
+import numpy as np
+import pytest
+import sparse_mocap
+from sparse_mocap.demo.generator import generate_performance
+
+from blender_addon.session import database, reconstruct, take
+from blender_addon.session.errors import InputError
+from blender_addon.session.job import Cancelled
+
+SITES = ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
+
+
+@pytest.fixture(scope="module")
+def motions(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("motions")
+    generate_performance(folder / "all.bvh")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def files(motions):
+    """A database and a take of a part of it."""
+    built, recorded = motions.parent / "all.smdb", motions.parent / "part.csv"
+    job, target = database.build_job(str(motions), str(built), mirror=False, exclude="")
+    job.run()
+    assert target == str(built)
+    motion, _ = sparse_mocap.standard_motion(sparse_mocap.read_motion(motions / "all.bvh")[0])
+    sparse_mocap.write_take(recorded, sparse_mocap.simulated(motion.trimmed(0, 300), SITES, 100.0))
+    return str(built), str(recorded)
+
+
+def test_output_is_beside_the_folder_and_gets_its_ending(tmp_path):
+    assert database.default_output(str(tmp_path / "walks")) == str(tmp_path / "walks.smdb")
+    assert database.default_output(str(tmp_path / "walks") + "/") == str(tmp_path / "walks.smdb")
+    assert database.checked_output(str(tmp_path / "x.y")) == str(tmp_path / "x.y.smdb")
+
+
+def test_sources_that_are_none_are_refused(tmp_path):
+    for source in ("", str(tmp_path / "nowhere")):
+        with pytest.raises(InputError):
+            database.build_job(source, str(tmp_path / "x"), mirror=False, exclude="")
+
+
+def test_patterns_leave_files_out(motions, tmp_path):
+    job, _ = database.build_job(
+        str(motions), str(tmp_path / "x"), mirror=False, exclude=" , *.bvh,"
+    )
+    with pytest.raises(ValueError, match="excluded"):
+        job.run()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_database_and_take_say_what_is_in_them(files):
+    opened, loaded = database.databases.get(files[0]), take.takes.get(files[1])
+    assert (opened.num_clips, opened.num_sources, opened.rate_hz) == (1, 1, 25.0)
+    assert loaded.sensors == SITES
+    assert loaded.rate_hz == pytest.approx(100.0)
+    assert loaded.duration_s == pytest.approx(5.0, abs=0.05)
+
+
+@pytest.mark.parametrize("preset", ["default", "paper"])
+def test_reconstruct_gives_the_take_a_motion(files, preset):
+    performance = reconstruct.reconstruct_job(*files, preset=preset, offline=False).run()
+    assert performance.name == "part"
+    assert performance.duration_s == pytest.approx(5.0, abs=0.1)
+    assert np.isfinite(performance.motion.joint_positions("world")).all()
+    assert performance.misfit_mps2 < 2.0  # the database holds that very motion
+    assert not performance.is_guess
+
+
+def test_progress_can_stop_a_reconstruction(files):
+    job = reconstruct.reconstruct_job(*files, preset="default", offline=True)
+    with pytest.raises(Cancelled):
+        job.run(job.cancel)
