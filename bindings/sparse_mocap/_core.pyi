@@ -114,6 +114,7 @@ class Clip:
     source_hash: str
     is_mirrored: bool
     is_reversed: bool
+    tempo: float
     begin: int
     end: int
 
@@ -156,6 +157,7 @@ def build_database(
     rate_hz: float = 25.0,
     mirror: bool = False,
     reverse: bool = False,
+    tempo_copies: Sequence[float] = (0.8, 1.25),
     exclude: Sequence[str] = (),
     strict: bool = False,
     progress: ProgressCallback | None = None,

@@ -59,12 +59,14 @@ Motion clip_motion(const MotionDatabase& database, int index) {
 
 BuildReport build(const std::vector<std::filesystem::path>& sources,
                   const std::filesystem::path& output, double rate_hz, bool mirror, bool reverse,
+                  const std::vector<double>& tempo_copies,
                   const std::vector<std::string>& exclude, bool strict,
                   const std::optional<py::function>& callback) {
   BuildOptions options;
   options.rate_hz = rate_hz;
   options.add_mirrored = mirror;
   options.add_reversed = reverse;
+  options.tempo_copies = tempo_copies;
   options.exclude = exclude;
   options.is_strict = strict;
   const Progress progress = progress_from(callback);
@@ -83,6 +85,7 @@ void bind_database(py::module_& m) {
       .def_readonly("source_hash", &Clip::source_hash)
       .def_readonly("is_mirrored", &Clip::is_mirrored)
       .def_readonly("is_reversed", &Clip::is_reversed)
+      .def_readonly("tempo", &Clip::tempo)
       .def_readonly("begin", &Clip::begin)
       .def_readonly("end", &Clip::end);
 
@@ -121,6 +124,7 @@ void bind_database(py::module_& m) {
 
   m.def("build_database", &build, py::arg("sources"), py::arg("output"), py::kw_only(),
         py::arg("rate_hz") = 25.0, py::arg("mirror") = false, py::arg("reverse") = false,
+        py::arg("tempo_copies") = BuildOptions().tempo_copies,
         py::arg("exclude") = std::vector<std::string>{}, py::arg("strict") = false,
         py::arg("progress") = py::none());
 }

@@ -2,8 +2,11 @@
 #include "sparse_mocap/database/builder.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <set>
-#include <tuple>
+#include <span>
 
 #include <nlohmann/json.hpp>
 
@@ -95,6 +98,7 @@ class Builder {
         const auto mapping = map_humanoid(file.motion.skeleton);
         if (seen.insert(body_key(labels_of(path).actor, mapping.bones)).second)
           bodies.push_back(mapping.bones);
+        num_source_seconds_ += file.motion.duration_s();
       });
       if (is_usable) usable.push_back(path);
     }
@@ -104,6 +108,20 @@ class Builder {
     content_.skeleton = make_standard_skeleton(averaged_bones(bodies));
     content_.rate_hz = options_.rate_hz;
     num_bodies_ = bodies.size();
+    decide_tempo_copies();
+  }
+
+  void decide_tempo_copies() {
+    double frames = num_source_seconds_ * options_.rate_hz;
+    frames *= (options_.add_mirrored ? 2.0 : 1.0) * (options_.add_reversed ? 2.0 : 1.0);
+    double with_copies = frames;
+    for (const double tempo : options_.tempo_copies) with_copies += frames / tempo;
+    if (with_copies <= options_.max_frames_with_copies) {
+      tempo_copies_ = options_.tempo_copies;
+    } else if (!options_.tempo_copies.empty()) {
+      report_.warnings.push_back("copies at other tempos are left out: they would make " +
+                                 std::to_string(std::lround(with_copies)) + " frames");
+    }
   }
 
   // Second pass: every file on that skeleton.
@@ -127,28 +145,44 @@ class Builder {
       report_.warnings.push_back(path.filename().string() + ": " + warning);
     const ClipLabels labels = labels_of(path);
     const std::string text = read_file(path, options_.read.max_bytes);
-    Clip clip{labels.name, labels.actor, labels.motion_class, path.filename().string(),
-              checksum(std::as_bytes(std::span(text)))};
-    add_copy(clip, motion);
-    if (options_.add_reversed) {
-      clip.is_reversed = true;
-      add_copy(clip, reversed(motion));
-      clip.is_reversed = false;
-    }
-    if (options_.add_mirrored) {
-      clip.is_mirrored = true;
-      const Motion mirror = mirrored(motion, standard_left_right());
-      add_copy(clip, mirror);
-      if (options_.add_reversed) {
-        clip.is_reversed = true;
-        add_copy(clip, reversed(mirror));
-      }
-    }
+    Clip clip;
+    clip.name = labels.name;
+    clip.actor = labels.actor;
+    clip.motion_class = labels.motion_class;
+    clip.source = path.filename().string();
+    clip.source_hash = checksum(std::as_bytes(std::span(text)));
+    add_mirrored(clip, motion);
     ++report_.num_files;
   }
 
+  void add_mirrored(Clip clip, const Motion& motion) {
+    add_reversed(clip, motion);
+    if (!options_.add_mirrored) return;
+    clip.is_mirrored = true;
+    add_reversed(clip, mirrored(motion, standard_left_right()));
+  }
+
+  void add_reversed(Clip clip, const Motion& motion) {
+    add_tempos(clip, motion);
+    if (!options_.add_reversed) return;
+    clip.is_reversed = true;
+    add_tempos(clip, reversed(motion));
+  }
+
+  void add_tempos(Clip clip, const Motion& motion) {
+    add_copy(clip, motion);
+    for (const double tempo : tempo_copies_) {
+      clip.tempo = tempo;
+      Motion copy = motion;
+      copy.frame_time_s /= tempo;
+      add_copy(clip, copy);
+    }
+  }
+
   void add_copy(const Clip& clip, const Motion& motion) {
-    content_.clip_rows.push_back(database_rows(motion, options_.rate_hz));
+    DatabaseRows rows = database_rows(motion, options_.rate_hz);
+    if (rows.num_frames() < kFewestFrames) return;
+    content_.clip_rows.push_back(std::move(rows));
     content_.clips.push_back(clip);
     ++report_.num_clips;
     report_.num_frames += content_.clip_rows.back().num_frames();
@@ -158,6 +192,7 @@ class Builder {
     return nlohmann::json{{"software", "sparse_mocap " SPARSE_MOCAP_VERSION},
                           {"mirror", options_.add_mirrored},
                           {"reverse", options_.add_reversed},
+                          {"tempo_copies", tempo_copies_},
                           {"exclude", options_.exclude},
                           {"files", report_.num_files},
                           {"bodies", num_bodies_},
@@ -172,6 +207,8 @@ class Builder {
   const Progress& progress_;
   std::size_t num_measured_ = 0;
   std::size_t num_bodies_ = 0;
+  double num_source_seconds_ = 0.0;
+  std::vector<double> tempo_copies_;
   DatabaseContent content_;
   BuildReport report_;
 };
@@ -260,6 +297,9 @@ BuildReport build_database(const std::vector<fs::path>& sources, const fs::path&
   if (!(options.rate_hz >= 1.0 && options.rate_hz <= 1000.0))
     throw ConfigError("the frame rate must be between 1 and 1000 Hz, got " +
                       std::to_string(options.rate_hz));
+  for (const double tempo : options.tempo_copies)
+    if (!(tempo >= 0.25 && tempo <= 4.0))
+      throw ConfigError("a tempo must be between 0.25 and 4, got " + std::to_string(tempo));
   return Builder(find_motion_files(sources, options.exclude), options, progress).build(output);
 }
 

@@ -15,6 +15,11 @@ struct BuildOptions {
   double rate_hz = 25.0;
   bool add_mirrored = false;
   bool add_reversed = false;
+  // Every motion is added once more at each of these tempos (readings recomputed): a small database
+  // then knows more of how fast a movement can be done. Left out, with a warning, where it would
+  // make the database larger than max_frames_with_copies.
+  std::vector<double> tempo_copies{0.8, 1.25};
+  int max_frames_with_copies = 200'000;
   std::vector<std::string> exclude;  // glob patterns (* ? [..]) on file names
   bool is_strict = false;            // stop at the first file that cannot be used
   ReadOptions read;

@@ -79,13 +79,12 @@ struct Points {
   }
 };
 
+// By Eigen, which adds up in four lanes; a plain loop may not be reordered and takes four times as
+// long.
 float squared_distance(const float* a, const float* b, std::size_t dimensions) {
-  float sum = 0.0F;
-  for (std::size_t d = 0; d < dimensions; ++d) {
-    const float difference = a[d] - b[d];
-    sum += difference * difference;
-  }
-  return sum;
+  using Row = Eigen::Map<const Eigen::VectorXf>;
+  const auto n = static_cast<Eigen::Index>(dimensions);
+  return (Row(a, n) - Row(b, n)).squaredNorm();
 }
 
 // The squared distance in one go over a contiguous row.

@@ -132,6 +132,7 @@ class DatabaseReader {
       clip.source_hash = entry.at("source_hash").get<std::string>();
       clip.is_mirrored = entry.at("mirrored").get<bool>();
       clip.is_reversed = entry.at("reversed").get<bool>();
+      clip.tempo = entry.at("tempo").get<double>();
       clip.begin = entry.at("begin").get<int>();
       clip.end = entry.at("end").get<int>();
       if (clip.begin != expected_begin || clip.end <= clip.begin ||

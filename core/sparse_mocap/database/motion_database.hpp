@@ -32,6 +32,7 @@ struct Clip {
   std::string source_hash;  // XXH3 of the source file
   bool is_mirrored = false;
   bool is_reversed = false;
+  double tempo = 1.0;  // how much faster than performed
   int begin = 0;
   int end = 0;
 

@@ -37,6 +37,7 @@ json clips_json(const DatabaseContent& content) {
                      {"source_hash", clip.source_hash},
                      {"mirrored", clip.is_mirrored},
                      {"reversed", clip.is_reversed},
+                     {"tempo", clip.tempo},
                      {"begin", begin},
                      {"end", end}});
     begin = end;

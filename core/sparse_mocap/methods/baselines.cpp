@@ -16,6 +16,9 @@ constexpr int kPlaybackNeighbours = 4096;
 std::vector<bool> used_frames(const MotionDatabase& database,
                               const std::vector<int>& excluded_clips) {
   std::vector<bool> is_used(static_cast<std::size_t>(database.num_frames()), true);
+  for (const Clip& clip : database.clips())
+    if (clip.tempo != 1.0)
+      std::fill(is_used.begin() + clip.begin, is_used.begin() + clip.end, false);
   for (const int clip : excluded_clips) {
     const Clip& excluded = database.clips().at(static_cast<std::size_t>(clip));
     std::fill(is_used.begin() + excluded.begin, is_used.begin() + excluded.end, false);

@@ -10,8 +10,9 @@
 
 namespace sparse_mocap {
 
-// What every method is compared with. Each gives one database frame a reading; clips in
-// excluded_clips are never used.
+// What every method is compared with. Each gives one database frame a reading; clips
+// in excluded_clips
+// and copies at other tempos are never used.
 
 // Plays back the database: the frame at the end of the best path of the online lazy neighbourhood
 // graph (K = 4096, raw readings).

@@ -23,8 +23,50 @@ Config paper() {
   return config;
 }
 
+// Taps of one part minus those of the same part some frames earlier.
+std::vector<Tap> change_since(const std::vector<Tap>& part, int frames) {
+  std::vector<Tap> change = part;
+  for (const Tap& tap : part) change.push_back({tap.frame - frames, -tap.weight});
+  return change;
+}
+
+std::vector<Tap> scaled(std::vector<Tap> part, double factor) {
+  for (Tap& tap : part) tap.weight *= factor;
+  return part;
+}
+
+// Found on HDM05 (scenarios 1 and 3), half of the clips to choose on and half to verify. Retrieval
+// looks one frame ahead.
 Config best_measured() {
+  constexpr int kAhead = 1;
   Config config;
+  const auto now = gaussian_taps(0.0, 1.0, -5, kAhead);
+  config.features.parts = {now, scaled(change_since(now, 4), 0.5)};
+  config.leg_weight = 1.6;
+  config.use_tempo_copies = true;
+  config.neighbour_fraction = 0.5;
+  config.olng.forgetting = 0.9;
+  config.olng.penalty = 0.8;
+  config.num_paths = 512;
+  config.weight_rule = WeightRule::softmax;
+  config.sharpness = 1.4;
+  config.offline_sharpness = 1.4;
+  config.offline_smoothing_s = 0.04;
+  config.regression_ridge = 6.0;
+  config.regression_features.parts = {
+      gaussian_taps(1.0, 0.7, -3, kAhead),  gaussian_taps(-1.0, 0.7, -5, kAhead),
+      gaussian_taps(-4.0, 1.0, -9, kAhead), gaussian_taps(-8.0, 1.5, -15, kAhead),
+      gaussian_taps(-14.0, 2.0, -22, kAhead)};
+  config.kernel_power = 2.0;
+  config.pose_space = PoseSpace::positions;
+  config.motion_rule = MotionRule::exact;
+  config.w_pose = 0.5;
+  config.w_motion = 0.5;
+  config.w_smooth = 0.0;
+  config.w_contr = 0.0;
+  config.pca_variance = 0.999;
+  config.is_multi_start = true;
+  config.foot_lock = 0.8;
   return config;
 }
 

@@ -31,6 +31,7 @@ struct Config {
   double neighbour_fraction = 0.25;
   FeatureLayout features;
   double leg_weight = 1.0;              // of the sensors on legs in the search
+  bool use_tempo_copies = false;        // search clips at other tempos than performed as well
   OlngConfig olng;
 
   // Weights, equation (1).

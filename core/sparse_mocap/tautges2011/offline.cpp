@@ -55,7 +55,7 @@ void TwoWayRetrieval::run(std::span<const std::vector<Neighbour>> columns) {
         mirrored.empty() ? 0.0 : config_.penalty * static_cast<double>(mirrored.back().distance);
     for (std::size_t i = 0; i < mirrored.size(); ++i) {
       // Both directions count the node itself.
-      const double own = std::max(charge - static_cast<double>(mirrored[i].distance), 0.0);
+      const double own = charge - static_cast<double>(mirrored[i].distance);
       paths_[t][i].reward += backward_.paths()[i].reward - own;
       paths_[t][i].length += backward_.paths()[i].length - 1;
     }

@@ -91,7 +91,7 @@ void OnlineLazyNeighbourhoodGraph::extend(std::span<const Neighbour> neighbours)
   for (const auto& neighbour : neighbours) {
     Node node;
     node.frame = neighbour.row;
-    node.reward = std::max(charge - neighbour.distance, 0.0F);
+    node.reward = charge - neighbour.distance;
     node.length = 1;
     connect(node);
     if (config_.window > 0) cut_to_window(node);

@@ -16,9 +16,12 @@
 namespace sparse_mocap::tautges2011 {
 namespace {
 
-std::vector<bool> searched_frames(const MotionDatabase& database,
+std::vector<bool> searched_frames(const MotionDatabase& database, bool use_tempo_copies,
                                   const std::vector<int>& excluded_clips) {
   std::vector<bool> is_searched(static_cast<std::size_t>(database.num_frames()), true);
+  for (const Clip& clip : database.clips())
+    if (clip.tempo != 1.0 && !use_tempo_copies)
+      std::fill(is_searched.begin() + clip.begin, is_searched.begin() + clip.end, false);
   for (const int clip : excluded_clips) {
     if (clip < 0 || clip >= static_cast<int>(database.clips().size()))
       throw ConfigError("excluded clip " + std::to_string(clip) + " is not in the database");
@@ -72,7 +75,7 @@ Reconstructor::Reconstructor(std::shared_ptr<const MotionDatabase> database,
       column_weights_(column_weights(sensors_, config_.leg_weight)),
       readings_(database_readings(*database_, sensors_)),
       index_(database_features(*database_, readings_, config_.features, column_weights_),
-             searched_frames(*database_, excluded_clips)),
+             searched_frames(*database_, config_.use_tempo_copies, excluded_clips)),
       clip_of_frame_(clips_of_frames(*database_)),
       graph_(clip_of_frame_, config_.olng),
       root_(database_->frame_time_s(), config_.foot_lock) {
