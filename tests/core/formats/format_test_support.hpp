@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <string>
 
 #include "sparse_mocap/formats/motion_file.hpp"
@@ -17,12 +17,10 @@ namespace sparse_mocap::testing {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    static std::atomic<int> counter{0};
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     path_ = std::filesystem::temp_directory_path() /
             ("sparse_mocap_" + std::string(test->test_suite_name()) + "_" + test->name() + "_" +
-             std::to_string(std::hash<std::string>{}(std::filesystem::current_path().string())) +
-             "_" + std::to_string(counter++));
+             std::to_string(std::random_device{}()));
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
