@@ -13,7 +13,8 @@ def test_builds_and_is_chosen(tmp_path):
     assert settings().database == str(output)
     database = addon("session.database").databases.get(str(output))
     assert database.num_sources == library().num_files
-    assert database.num_clips == 2 * library().num_files
+    mirrored = [clip.is_mirrored for clip in database.motions.clips]
+    assert 2 * sum(mirrored) == len(mirrored) == database.num_clips
     assert database.rate_hz == 25.0
     assert database.size_bytes == output.stat().st_size
     assert 0.01 < database.minutes < 10.0
@@ -27,7 +28,8 @@ def test_what_is_not_given_comes_from_the_panel(tmp_path):
     bpy.ops.sparse_mocap.build_database()
     database = addon("session.database").databases.get(str(tmp_path / "panel.smdb"))
     names = [path.stem for path in library().motions.iterdir() if "walk" not in path.stem]
-    assert database.num_clips == len(names)
+    assert database.num_sources == len(names)
+    assert not any(clip.is_mirrored for clip in database.motions.clips)
 
 
 def test_cancel_leaves_no_file(tmp_path):

@@ -4,8 +4,8 @@
 blender -b --factory-startup --python-exit-code 1 --python render_scene.py -- \
     --performed A.bvh --reconstructed B.bvh --blend take.blend --picture figures.png
 
-Works in Blender 3.4 and later, without a display. ``sparse_mocap`` must be importable; the add-on
-is taken from the repository that this file lies in.
+Works in Blender 3.4 and later, without a display. The add-on and, unless it is importable already,
+the package are taken from the repository that this file lies in.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ import numpy as np
 from bpy.types import Material, Mesh, Object
 from mathutils import Matrix, Vector
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3]))  # the add-on lies beside bindings/
+sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
+sys.path.append(str(Path(__file__).resolve().parents[2]))
 
 import sparse_mocap
 from blender_addon.scene.action import frames_of, make_action
@@ -213,19 +214,36 @@ def build_stage() -> None:
 def save_blend(path: Path, figures: list[Figure]) -> None:
     """The two figures side by side, ready to be played."""
     scene = bpy.context.scene
-    last = max(figure.duration_s for figure in figures) * scene.render.fps / scene.render.fps_base
-    scene.frame_start, scene.frame_end = 1, math.ceil(1 + last)
+    rate = scene.render.fps / scene.render.fps_base
+    scene.frame_start = 1
+    scene.frame_end = math.ceil(1 + rate * max(shown.duration_s for shown in figures))
     for shown, x in zip(figures, (-0.7, 0.7), strict=True):
         show_at(1.0)
         placed = placement(shown, Vector((x, 0.0, 0.0)), 0.0)
         shown.armature.matrix_world = placed @ shown.armature.matrix_world
         shown.armature.hide_render = True
-    camera = add("Camera", bpy.data.cameras.new("Camera"))
-    camera.location = (4.5, -9.0, 3.2)
-    camera.rotation_euler = (math.radians(77.0), 0.0, math.radians(25.0))
-    scene.camera = camera
+    scene.camera = add("Camera", bpy.data.cameras.new("Camera"))
+    follow_from_afar(scene.camera, figures)
+    scene.view_settings.view_transform = "Standard"
     show_at(1.0)
     bpy.ops.wm.save_as_mainfile(filepath=str(path.resolve()))
+
+
+def follow_from_afar(camera: Object, figures: list[Figure]) -> None:
+    """Put the camera where it sees all the ground that the figures cover."""
+    scene = bpy.context.scene
+    roots = []
+    for frame in np.linspace(scene.frame_start, scene.frame_end, 60):
+        show_at(float(frame))
+        roots += [
+            shown.armature.matrix_world @ shown.armature.pose.bones[0].head for shown in figures
+        ]
+    lowest, highest = np.min(roots, axis=0), np.max(roots, axis=0)
+    middle = Vector((lowest + highest) / 2.0)
+    distance = 3.0 + 1.2 * float(np.linalg.norm((highest - lowest)[:2]))
+    direction = Vector((0.35, -1.0, 0.30)).normalized()
+    camera.location = middle + distance * direction
+    camera.rotation_euler = direction.to_track_quat("Z", "Y").to_euler()
 
 
 def show_at(frame: float) -> None:
@@ -339,7 +357,6 @@ def render(path: Path, samples: int) -> None:
     scene.cycles.samples = samples
     scene.cycles.use_denoising = False  # some builds have no denoiser
     scene.cycles.max_bounces = 2
-    scene.view_settings.view_transform = "Standard"
     scene.render.resolution_x, scene.render.resolution_y = PICTURE_SIZE
     scene.render.resolution_percentage = 100
     scene.render.image_settings.file_format = "PNG"

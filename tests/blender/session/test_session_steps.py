@@ -55,7 +55,8 @@ def test_patterns_leave_files_out(motions, tmp_path):
 
 def test_database_and_take_say_what_is_in_them(files):
     opened, loaded = database.databases.get(files[0]), take.takes.get(files[1])
-    assert (opened.num_clips, opened.num_sources, opened.rate_hz) == (1, 1, 25.0)
+    assert (opened.num_sources, opened.rate_hz) == (1, 25.0)
+    assert opened.num_clips >= 1
     assert loaded.sensors == SITES
     assert loaded.rate_hz == pytest.approx(100.0)
     assert loaded.duration_s == pytest.approx(5.0, abs=0.05)
