@@ -7,6 +7,8 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..session import job
+from ..session.database import databases
+from ..session.take import takes
 from . import database, job_operator, reconstruct, take
 
 CLASSES = (*job_operator.CLASSES, *database.CLASSES, *take.CLASSES, *reconstruct.CLASSES)
@@ -18,18 +20,25 @@ def _before_load(*_: object) -> None:
     job.cancel_current()
 
 
+def _end_all() -> None:
+    """No thread of ours is left when Python ends or the add-on goes."""
+    job.cancel_current()
+    databases.close()
+    takes.close()
+
+
 def register() -> None:
     """Make the operators known."""
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.app.handlers.load_pre.append(_before_load)
-    atexit.register(job.cancel_current)
+    atexit.register(_end_all)
 
 
 def unregister() -> None:
     """Stop what runs and take the operators away."""
-    job.cancel_current()
-    atexit.unregister(job.cancel_current)
+    _end_all()
+    atexit.unregister(_end_all)
     bpy.app.handlers.load_pre.remove(_before_load)
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -96,12 +96,14 @@ class SPARSEMOCAP_OT_build_database(JobOperator, Operator):
 
     def prepare(self, context: Context) -> Job:
         """Build from the folder that is given or set in the scene."""
-        settings = settings_of(context.scene)
+        self.take_from_panel(context, "source", "mirror", "exclude")
+        if not self.filepath:
+            self.filepath = settings_of(context.scene).output
         job, self._path = build_job(
-            bpy.path.abspath(self.given(context, "source")),
-            bpy.path.abspath(self.filepath or settings.output),
-            mirror=self.given(context, "mirror"),
-            exclude=self.given(context, "exclude"),
+            bpy.path.abspath(self.source),
+            bpy.path.abspath(self.filepath),
+            mirror=self.mirror,
+            exclude=self.exclude,
         )
         return job
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import Any
 
+import bpy
 from bpy.types import Context, Event, Operator
 
 from ..scene import compat
@@ -34,10 +35,11 @@ class JobOperator:
         """Change Blender's data, whole or not at all, and return one line that says so."""
         raise NotImplementedError
 
-    def given(self, context: Context, name: str) -> Any:
-        """The operator's own property if it was set, else the scene's setting of that name."""
-        owner = self if self.properties.is_property_set(name) else settings_of(context.scene)
-        return getattr(owner, name)
+    def take_from_panel(self, context: Context, *names: str) -> None:
+        """Set those of the operator's properties that were not given to the scene's settings."""
+        for name in names:
+            if not self.properties.is_property_set(name):
+                setattr(self, name, getattr(settings_of(context.scene), name))
 
     def execute(self, context: Context) -> set[str]:
         """Do it all now."""
@@ -55,6 +57,8 @@ class JobOperator:
 
     def invoke(self, context: Context, event: Event) -> set[str]:
         """Do it on a worker thread while Blender stays usable."""
+        if bpy.app.background:
+            return self.execute(context)  # nothing ticks there
         try:
             _refuse_while_rendering()
             self._job = self.prepare(context)

@@ -31,15 +31,14 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
     def prepare(self, context: Context) -> Job:
         """Reconstruct the scene's take from the scene's database."""
         settings = settings_of(context.scene)
+        self.take_from_panel(context, "preset", "offline", "start_frame", "reuse_armature")
         job = reconstruct_job(
             bpy.path.abspath(settings.database),
             bpy.path.abspath(settings.take),
-            preset=self.given(context, "preset"),
-            offline=self.given(context, "offline"),
+            preset=self.preset,
+            offline=self.offline,
         )
-        self._start_frame = self.given(context, "start_frame")
-        self._reuse = self.given(context, "reuse_armature")
-        if self._reuse:
+        if self.reuse_armature:
             reusable_armature(context)  # better said before the work than after it
         return job
 
@@ -47,7 +46,7 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
         """One action, on a new armature or on one that is there."""
         if result.is_guess:
             self.report({"WARNING"}, "The database holds nothing like this take: it is a guess")
-        armature = perform(context, result, self._start_frame, reuse=self._reuse)
+        armature = perform(context, result, self.start_frame, reuse=self.reuse_armature)
         action = armature.animation_data.action
         return (
             f'"{action.name}" on "{armature.name}": {result.duration_s:.1f} s, '

@@ -64,11 +64,16 @@ def new_armature(context: Context, skeleton: Any, name: str = NAME) -> Object:
         bpy.data.objects.remove(armature)
         bpy.data.armatures.remove(data)
         raise
-    for bone in armature.pose.bones:
-        bone.rotation_mode = "QUATERNION"
+    use_quaternions(armature)
     data[MARK] = ",".join(skeleton.names)
     armature.show_in_front = True
     return armature
+
+
+def use_quaternions(armature: Object) -> None:
+    """Let the armature's bones turn by what the keys hold."""
+    for bone in armature.pose.bones:
+        bone.rotation_mode = "QUATERNION"
 
 
 def units_per_metre(scene: Scene) -> float:

@@ -11,7 +11,7 @@ from bpy.types import Action, Context, Object
 
 from ..session.reconstruct import Performance
 from .action import frames_of, make_action
-from .armature import is_ours, new_armature, reusable_armature, select_only
+from .armature import is_ours, new_armature, reusable_armature, select_only, use_quaternions
 from .compat import assign_action
 
 _FACTS = "sparse_mocap"  # custom property of actions that this add-on made
@@ -47,6 +47,7 @@ def perform(
         raise
     facts = Facts(performance.duration_s, performance.misfit_mps2, performance.is_guess)
     action[_FACTS] = asdict(facts)
+    use_quaternions(armature)
     assign_action(armature, action)
     select_only(context, armature)
     return armature

@@ -37,12 +37,14 @@ class Shelf(Generic[T]):
         self._load = load
         self._lock = threading.Lock()
         self._entry: Entry[T] | None = None
+        self._threads: list[threading.Thread] = []
 
     def get(self, path: str) -> T:
         """The opened file. Raises InputError, OSError or what the file is at fault for."""
         stamp = self._stamp(path)
         entry = self._entry
-        if entry is not None and (entry.path, entry.stamp) == (path, stamp) and entry.value:
+        is_known = entry is not None and (entry.path, entry.stamp) == (path, stamp)
+        if is_known and entry.value is not None:
             return entry.value
         value = self._load(path)
         self._keep(Entry(path, stamp, value))
@@ -59,12 +61,21 @@ class Shelf(Generic[T]):
             if entry is not None and (entry.path, entry.stamp) == (path, stamp):
                 return entry
             self._entry = opening = Entry(path, stamp)
-        threading.Thread(target=self._open, args=(opening,), daemon=True).start()
+            self._threads = [thread for thread in self._threads if thread.is_alive()]
+            thread = threading.Thread(target=self._open, args=(opening,), daemon=True)
+            self._threads.append(thread)
+            thread.start()
         return opening
 
     def forget(self) -> None:
         """Let go of the file."""
         self._keep(None)
+
+    def close(self) -> None:
+        """Let go of the file and wait for what is still being opened."""
+        self.forget()
+        for thread in self._threads:
+            thread.join()
 
     def _open(self, opening: Entry[T]) -> None:
         try:

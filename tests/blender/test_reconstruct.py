@@ -180,6 +180,25 @@ def test_scaled_and_moved_armature_takes_a_second_take():
     assert np.abs(found - wanted).max() < 2e-3
 
 
+def test_bones_that_were_made_to_turn_otherwise_turn_by_the_keys():
+    choose_files()
+    armature = reconstruct()
+    armature.pose.bones["lhumerus"].rotation_mode = "XYZ"
+    reconstruct(reuse_armature=True)
+    motion = expected_performance().motion
+    wanted = in_blenders_axes(motion.joint_positions("world"))[0]
+    assert np.abs(evaluated_points(armature, 1.0, motion.skeleton.names) - wanted).max() < 1e-3
+
+
+def test_what_is_not_given_comes_from_the_panel():
+    choose_files()
+    settings().start_frame, settings().offline = 40.0, True
+    first = reconstruct().animation_data.action
+    assert round(first.frame_range[0], 4) == 40.0
+    second = reconstruct(start_frame=7.0).animation_data.action
+    assert round(second.frame_range[0], 4) == 7.0
+
+
 def test_works_from_another_mode():
     choose_files()
     armature = reconstruct()

@@ -51,3 +51,12 @@ def test_another_file_meanwhile_ends_the_job(tmp_path):
 
 def test_unregister_meanwhile_ends_the_job(tmp_path):
     _in_window("unregister", tmp_path)
+
+
+def test_quitting_meanwhile_leaves_no_file(tmp_path):
+    _in_window("quit", tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_last_operator_can_be_adjusted(tmp_path):
+    _in_window("adjust", tmp_path)

@@ -155,6 +155,27 @@ def unregister_meanwhile() -> Steps:
     blender_addon.register()
 
 
+def quit_meanwhile() -> Steps:
+    job = start_building()
+    yield 0.15
+    assert job.is_running
+    with bpy.context.temp_override(**view()):
+        bpy.ops.wm.quit_blender()
+    yield TIMEOUT_S
+
+
+def adjust_afterwards() -> Steps:
+    choose_files()
+    bpy.context.scene.sparse_mocap.start_frame = 11.0
+    start(bpy.ops.sparse_mocap.reconstruct)
+    yield from until(lambda: len(bpy.data.actions) == 1)
+    yield 0.3
+    operator = bpy.context.window_manager.operators[-1]
+    assert operator.bl_idname == "SPARSE_MOCAP_OT_reconstruct"
+    assert operator.properties.start_frame == 11.0
+    assert bpy.data.actions[0].frame_range[0] == 11.0
+
+
 SCENARIOS = {
     "reconstruct": reconstruct,
     "escape": escape,
@@ -162,6 +183,8 @@ SCENARIOS = {
     "undo": undo_meanwhile,
     "load": load_meanwhile,
     "unregister": unregister_meanwhile,
+    "quit": quit_meanwhile,
+    "adjust": adjust_afterwards,
 }
 
 
