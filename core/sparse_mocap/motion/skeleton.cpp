@@ -136,16 +136,13 @@ void joint_angles(const Joint& joint, const Mat3& R_joint, const double* referen
 
 void unwind_pose(const Skeleton& skeleton, const Eigen::VectorXd& reference,
                  Eigen::Ref<Eigen::VectorXd> angles) {
-  const auto wrap = [](const Eigen::VectorXd& pose, const auto& near) -> Eigen::VectorXd {
-    return pose.array() - 2.0 * kPi * ((pose - near).array() / (2.0 * kPi)).round();
-  };
-  angles = wrap(angles, reference);
+  for (Eigen::Index i = 0; i < angles.size(); ++i) angles[i] = wrapped_near(angles[i], reference[i]);
   for (int j = 0; j < skeleton.num_joints(); ++j) {
     if (skeleton.joint(j).axes.size() != 3) continue;
-    const auto near = reference.segment<3>(skeleton.angle_begin(j));
+    const Vec3 near = reference.segment<3>(skeleton.angle_begin(j));
     auto triple = angles.segment<3>(skeleton.angle_begin(j));
-    const Eigen::VectorXd other =
-        wrap(Vec3(triple[0] + kPi, kPi - triple[1], triple[2] + kPi), near);
+    const Vec3 other(wrapped_near(triple[0] + kPi, near[0]), wrapped_near(kPi - triple[1], near[1]),
+                     wrapped_near(triple[2] + kPi, near[2]));
     if ((other - near).squaredNorm() < (triple - near).squaredNorm()) triple = other;
   }
 }

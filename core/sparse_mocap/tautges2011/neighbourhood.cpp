@@ -55,37 +55,60 @@ void kinematics_at(const MotionDatabase& database, int frame, Eigen::Ref<Eigen::
   acceleration = (row(centre + 1) - 2.0 * row(centre) + row(centre - 1)) / (dt * dt);
 }
 
-Neighbourhood gather(const MotionDatabase& database, std::vector<Path> paths,
-                     Eigen::VectorXd weights, const Eigen::VectorXd* near_angles) {
-  Neighbourhood out;
-  const auto n = static_cast<Eigen::Index>(paths.size());
+namespace {
+
+// The rows of the database positions that lead into a frame from the one before, inside its clip.
+Eigen::VectorXd step_into(const MotionDatabase& database, const Clip& clip, int frame) {
+  const int into = std::max(frame, std::min(clip.begin + 1, clip.end - 1));
+  const int from = std::max(into - 1, clip.begin);
+  return (database.positions().row(into) - database.positions().row(from))
+      .transpose()
+      .cast<double>();
+}
+
+void gather_derivatives(const MotionDatabase& database, Neighbourhood& out) {
   const Eigen::Index dimensions = database.positions().cols();
-  out.angles.resize(database.angles().cols(), n);
-  for (auto* matrix : {&out.positions, &out.velocities, &out.accelerations, &out.steps,
-                       &out.velocities_before})
+  const auto n = static_cast<Eigen::Index>(out.paths.size());
+  for (auto* matrix : {&out.velocities, &out.accelerations, &out.velocities_before})
     matrix->resize(dimensions, n);
   Eigen::VectorXd unused(dimensions);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Path& path = paths[static_cast<std::size_t>(i)];
-    const Clip& clip =
-        database.clips()[static_cast<std::size_t>(database.clip_index(path.frame))];
-    out.angles.col(i) = database.angles().row(path.frame).transpose().cast<double>();
-    out.positions.col(i) = database.positions().row(path.frame).transpose().cast<double>();
+    const Path& path = out.paths[static_cast<std::size_t>(i)];
+    const Clip& clip = database.clips()[static_cast<std::size_t>(database.clip_index(path.frame))];
     kinematics_at(database, path.frame, out.velocities.col(i), out.accelerations.col(i));
-    const int into = std::max(path.frame, std::min(clip.begin + 1, clip.end - 1));
-    const int from = std::max(into - 1, clip.begin);
-    out.steps.col(i) = (database.positions().row(into) - database.positions().row(from))
-                           .transpose()
-                           .cast<double>();
     const int before =
         path.previous_frame >= 0 ? path.previous_frame : std::max(path.frame - 1, clip.begin);
     kinematics_at(database, before, out.velocities_before.col(i), unused);
   }
+}
+
+bool needs_derivatives(const Config& config) {
+  return config.w_smooth > 0.0 || config.w_contr > 0.0 ||
+         (config.w_motion > 0.0 && config.motion_rule == MotionRule::taylor);
+}
+
+}  // namespace
+
+Neighbourhood gather(const MotionDatabase& database, const Config& config, std::vector<Path> paths,
+                     Eigen::VectorXd weights, const Eigen::VectorXd* near_angles) {
+  Neighbourhood out;
+  out.paths = std::move(paths);
+  out.weights = std::move(weights);
+  const auto n = static_cast<Eigen::Index>(out.paths.size());
+  out.angles.resize(database.angles().cols(), n);
+  out.positions.resize(database.positions().cols(), n);
+  out.steps.resize(database.positions().cols(), n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const int frame = out.paths[static_cast<std::size_t>(i)].frame;
+    const Clip& clip = database.clips()[static_cast<std::size_t>(database.clip_index(frame))];
+    out.angles.col(i) = database.angles().row(frame).transpose().cast<double>();
+    out.positions.col(i) = database.positions().row(frame).transpose().cast<double>();
+    out.steps.col(i) = step_into(database, clip, frame);
+  }
+  if (needs_derivatives(config)) gather_derivatives(database, out);
   if (near_angles != nullptr) unwind_pose(database.skeleton(), *near_angles, out.angles.col(0));
   const Eigen::VectorXd best = out.angles.col(0);
   for (Eigen::Index i = 1; i < n; ++i) unwind_pose(database.skeleton(), best, out.angles.col(i));
-  out.paths = std::move(paths);
-  out.weights = std::move(weights);
   return out;
 }
 

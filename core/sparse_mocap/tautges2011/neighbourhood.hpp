@@ -36,9 +36,10 @@ Eigen::VectorXd path_weights(std::span<const Path> paths, WeightRule rule, doubl
 void kinematics_at(const MotionDatabase& database, int frame, Eigen::Ref<Eigen::VectorXd> velocity,
                    Eigen::Ref<Eigen::VectorXd> acceleration);
 
-// Looks the paths up in the database. near_angles, when given, is a pose near which the best path's
-// angles are put.
-Neighbourhood gather(const MotionDatabase& database, std::vector<Path> paths,
+// Looks the paths up in the database; V, A and velocities_before only if the configuration has use
+// for them (empty otherwise). near_angles, when given, is a pose near which the best path's angles
+// are put.
+Neighbourhood gather(const MotionDatabase& database, const Config& config, std::vector<Path> paths,
                      Eigen::VectorXd weights, const Eigen::VectorXd* near_angles);
 
 }  // namespace sparse_mocap::tautges2011

@@ -20,6 +20,8 @@ constexpr std::array kWarping{Step{1, 1}, Step{1, 2}, Step{2, 1}};
 OnlineLazyNeighbourhoodGraph::OnlineLazyNeighbourhoodGraph(std::vector<std::int32_t> clip_of_frame,
                                                            const OlngConfig& config)
     : clip_of_frame_(std::move(clip_of_frame)), config_(config) {
+  for (int columns = 0; columns < 3; ++columns)
+    kept_after_[columns] = static_cast<float>(std::pow(config.forgetting, columns));
   for (auto& slots : slots_) slots.resize(clip_of_frame_.size());
 }
 
@@ -50,7 +52,7 @@ void OnlineLazyNeighbourhoodGraph::connect(Node& node) const {
     const std::int32_t frame = node.frame - step.database;
     const Node* before = node_at(step.query, frame);
     if (before == nullptr || clip_of_frame_[static_cast<std::size_t>(frame)] != clip) continue;
-    const auto kept = static_cast<float>(std::pow(config_.forgetting, step.query)) * before->reward;
+    const float kept = kept_after_[step.query] * before->reward;
     if (kept <= best) continue;
     best = kept;
     node.previous = slots_[(now_ - step.query) % 3][static_cast<std::size_t>(frame)].node;

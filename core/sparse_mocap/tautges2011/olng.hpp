@@ -68,6 +68,7 @@ class OnlineLazyNeighbourhoodGraph {
 
   std::vector<std::int32_t> clip_of_frame_;
   OlngConfig config_;
+  float kept_after_[3];  // forgetting after 0, 1 and 2 columns
   std::deque<Column> columns_;  // newest last
   // For the two newest columns: which node a database frame has. An entry counts only if its stamp
   // is the column's, so nothing has to be cleared.

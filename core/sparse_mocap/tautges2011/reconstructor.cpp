@@ -133,7 +133,7 @@ PoseEstimate Reconstructor::estimate_online(const Window& window) {
 // Section 5: the pose that the paths and the past ask for.
 PoseEstimate Reconstructor::synthesize(std::vector<Path> paths, Eigen::VectorXd weights,
                                        const Window& window) {
-  Neighbourhood neighbours = gather(*database_, std::move(paths), std::move(weights),
+  Neighbourhood neighbours = gather(*database_, config_, std::move(paths), std::move(weights),
                                     past_ ? &past_->angles : nullptr);
   if (config_.regression_ridge > 0.0) correct_poses(neighbours, window);
   const Eigen::VectorXd angles = minimize_energy(neighbours);
@@ -146,9 +146,11 @@ Eigen::VectorXd Reconstructor::minimize_energy(const Neighbourhood& neighbours) 
   if (past_) {
     const auto& [angles, x, x_before, accelerations] = *past_;
     terms.push_back(motion_prior(neighbours, config_, x, dt));                // equation (7)
-    terms.push_back(smoothness_prior(neighbours, config_, x, x_before, dt));  // equation (8)
-    terms.push_back(
-        control_term(neighbours, config_, x, accelerations, sensors_, dt));   // equation (11)
+    if (config_.w_smooth > 0.0)
+      terms.push_back(smoothness_prior(neighbours, config_, x, x_before, dt));  // equation (8)
+    if (config_.w_contr > 0.0)
+      terms.push_back(
+          control_term(neighbours, config_, x, accelerations, sensors_, dt));  // equation (11)
   }
   const Energy energy(database_->skeleton(), neighbours.weights, std::move(terms));
   const PoseSubspace subspace =

@@ -12,7 +12,9 @@ PoseSubspace weighted_pca(const Eigen::MatrixXd& poses, const Eigen::VectorXd& w
   PoseSubspace out;
   out.mean = poses * weights;
   const Eigen::MatrixXd centred = poses.colwise() - out.mean;
-  const Eigen::MatrixXd covariance = centred * weights.asDiagonal() * centred.transpose();
+  const Eigen::MatrixXd rooted = centred * weights.cwiseSqrt().asDiagonal();
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(poses.rows(), poses.rows());
+  covariance.selfadjointView<Eigen::Lower>().rankUpdate(rooted);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
   // Eigen sorts ascending.
   const Eigen::VectorXd values = eigen.eigenvalues().cwiseMax(0.0).reverse();
