@@ -88,6 +88,7 @@ def report(
 
 def _full_name(clip: Clip) -> str:
     copies = [" mirrored"] * clip.is_mirrored + [" reversed"] * clip.is_reversed
+    copies += [f" at tempo {clip.tempo:g}"] * (clip.tempo != 1.0)
     return clip.name + "".join(copies)
 
 

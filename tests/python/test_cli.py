@@ -51,8 +51,8 @@ def test_build_makes_the_database_it_tells_of(cli: Cli, library: Path, tmp_path:
     assert database.rate_hz == 30
     assert {clip.actor for clip in database.clips} == {"bruno"}
     assert "walk_02" not in {clip.name.partition("_")[2] for clip in database.clips}
-    assert len(database.clips) == 4 * 5
-    assert f"20 clips, {database.num_frames} frames" in result.output
+    assert len(database.clips) == 4 * 3 * 5
+    assert f"60 clips, {database.num_frames} frames" in result.output
     assert "from 5 files" in result.output
 
 
@@ -76,9 +76,9 @@ def test_info_as_json_is_what_the_database_holds(cli: Cli, database_path: Path) 
     told = json.loads(result.stdout)
     database = MotionDatabase(database_path)
     assert told["frames"] == database.num_frames
-    assert told["num_clips"] == len(told["clips"]) == len(database.clips) == 24
-    assert told["num_mirrored"] == 12
-    assert told["actors"] == {"ada": 12, "bruno": 12}
+    assert told["num_clips"] == len(told["clips"]) == len(database.clips) == 72
+    assert (told["num_mirrored"], told["num_tempo_copies"]) == (36, 48)
+    assert told["actors"] == {"ada": 36, "bruno": 36}
     assert told["build"]["mirror"] is True
     assert told["bytes"] == database_path.stat().st_size
     assert [clip["end"] for clip in told["clips"]] == [clip.end for clip in database.clips]
@@ -86,7 +86,7 @@ def test_info_as_json_is_what_the_database_holds(cli: Cli, database_path: Path) 
 
 def test_info_is_readable(cli: Cli, database_path: Path) -> None:
     lines = cli("database", "info", database_path).stdout.splitlines()
-    assert "actors   ada (12), bruno (12)" in lines
+    assert "actors   ada (36), bruno (36)" in lines
     assert all(line == line.rstrip() for line in lines)
 
 

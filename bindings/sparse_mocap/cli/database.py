@@ -29,6 +29,10 @@ def database() -> None:
 @click.option("--mirror", is_flag=True, help="Adds every clip with left and right exchanged.")
 @click.option("--reverse", is_flag=True, help="Adds every clip played backwards.")
 @click.option(
+    "--no-tempo-copies", is_flag=True,
+    help="Leaves out the copies at 0.8 and 1.25 times the tempo, which help small databases.",
+)  # fmt: skip
+@click.option(
     "--exclude", metavar="GLOB", multiple=True,
     help="Leaves out files with such a name. May be repeated.",
 )  # fmt: skip
@@ -39,6 +43,7 @@ def build(
     fps: float,
     mirror: bool,
     reverse: bool,
+    no_tempo_copies: bool,
     exclude: tuple[str, ...],
     strict: bool,
 ) -> None:
@@ -57,6 +62,7 @@ def build(
             exclude=exclude,
             strict=strict,
             progress=progress,
+            **({"tempo_copies": ()} if no_tempo_copies else {}),
         )
     warn([f"left out: {reason}" for _, reason in report.skipped])
     warn(report.warnings)
@@ -92,6 +98,7 @@ def _described(opened: MotionDatabase) -> dict[str, Any]:
         "num_clips": len(clips),
         "num_mirrored": sum(clip.is_mirrored for clip in clips),
         "num_reversed": sum(clip.is_reversed for clip in clips),
+        "num_tempo_copies": sum(clip.tempo != 1.0 for clip in clips),
         "actors": dict(sorted(Counter(clip.actor for clip in clips).items())),
         "motion_classes": dict(sorted(Counter(clip.motion_class for clip in clips).items())),
         "build": json.loads(opened.build_info),
@@ -104,6 +111,7 @@ def _described(opened: MotionDatabase) -> dict[str, Any]:
                 "source_hash": clip.source_hash,
                 "is_mirrored": clip.is_mirrored,
                 "is_reversed": clip.is_reversed,
+                "tempo": clip.tempo,
                 "begin": clip.begin,
                 "end": clip.end,
             }
@@ -118,7 +126,8 @@ def _show(described: dict[str, Any]) -> None:
         "frames": f"{described['frames']} at {described['rate_hz']:g} Hz,"
         f" {described['duration_s'] / 60:.1f} min",
         "clips": f"{described['num_clips']}, of which {described['num_mirrored']} mirrored"
-        f" and {described['num_reversed']} reversed",
+        f" and {described['num_reversed']} reversed,"
+        f" {described['num_tempo_copies']} at another tempo",
         "actors": _counted(described["actors"]),
         "classes": _counted(described["motion_classes"]),
         "sites": ", ".join(described["sites"]),

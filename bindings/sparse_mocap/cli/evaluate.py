@@ -14,7 +14,7 @@ from typing import Any
 import click
 from rich.table import Table
 
-from .. import MotionDatabase, __version__, build_database
+from .. import MotionDatabase, _core, build_database
 from ..evaluation import SCENARIOS, Evaluation, Settings, motion_files
 from ..evaluation import evaluate as run_evaluation
 from .console import ProgressCallback, print_table, progress_bar, warn, write_json
@@ -111,8 +111,9 @@ def _database(
 def _fingerprint(source: Path) -> str:
     files = [path for same_name in motion_files(source).values() for path in same_name]
     files += source.rglob("*.[aA][sS][fF]")
+    files.append(Path(_core.__file__))  # another build may build another database
     seen = [[str(path), path.stat().st_size, path.stat().st_mtime_ns] for path in sorted(files)]
-    return hashlib.sha256(json.dumps([__version__, seen]).encode()).hexdigest()[:12]
+    return hashlib.sha256(json.dumps(seen).encode()).hexdigest()[:12]
 
 
 def _show(found: Evaluation) -> None:

@@ -21,8 +21,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from ..cli.faults import as_faults
         from .story import play
     except ImportError as error:
-        print(f"demo: {error}", file=sys.stderr)
-        print("demo: it needs: pip install 'sparse-mocap[cli]'", file=sys.stderr)
+        print(f"demo: {error}{_remedy(error)}", file=sys.stderr)
         return 1
     try:
         with as_faults():
@@ -30,6 +29,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except click.ClickException as fault:
         fault.show()
         return fault.exit_code
+
+
+def _remedy(error: ImportError) -> str:
+    is_extra = (error.name or "").partition(".")[0] in ("click", "matplotlib", "rich")
+    return "; install it with: pip install 'sparse-mocap[cli]'" if is_extra else ""
 
 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:

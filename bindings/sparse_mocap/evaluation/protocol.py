@@ -27,13 +27,18 @@ def motion_files(folder: str | os.PathLike[str]) -> dict[str, list[Path]]:
     return files
 
 
+def is_copy(clip: Clip) -> bool:
+    """Whether a clip is another one mirrored, reversed or at another tempo."""
+    return clip.is_mirrored or clip.is_reversed or clip.tempo != 1.0
+
+
 def choose_tests(clips: Sequence[Clip], pattern: str | None = None) -> list[int]:
-    """Returns the indices of the clips to test: neither mirrored nor reversed ones.
+    """Returns the indices of the clips to test: as they were recorded, no copies.
 
     Without a pattern on file names these are, for each actor and class, the first by name.
     """
     originals = sorted(
-        (i for i, clip in enumerate(clips) if not clip.is_mirrored and not clip.is_reversed),
+        (i for i, clip in enumerate(clips) if not is_copy(clip)),
         key=lambda i: (clips[i].name, clips[i].source),
     )
     if pattern is not None:
