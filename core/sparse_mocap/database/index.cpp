@@ -35,7 +35,9 @@ class NearestSet {
   bool empty() const { return buffer_.empty(); }
   bool full() const { return buffer_.size() >= k_; }
   // The tree rounds its lower bounds and drops equal distances; the slack keeps both within reach.
-  DistanceType worstDist() const { return bound_.first * (1.0F + 1e-5F); }
+  DistanceType worstDist() const {
+    return std::nextafter(bound_.first * (1.0F + 1e-5F), std::numeric_limits<float>::infinity());
+  }
 
   bool addPoint(DistanceType distance, IndexType row) {
     const Candidate candidate{distance, row};
