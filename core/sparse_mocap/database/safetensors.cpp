@@ -41,7 +41,9 @@ ElementType type_named(const std::string& name, const std::filesystem::path& pat
 }
 
 // JSON that refuses repeated keys, which would let two readers see two different files.
+// The parser takes a NUL for the end of the text, which would hide what follows it.
 json parse_strictly(const std::string& text, const std::filesystem::path& path) {
+  if (text.find('\0') != std::string::npos) refuse(path, "the header is not JSON");
   std::vector<std::set<std::string>> open_objects;
   const auto watch = [&](int, json::parse_event_t event, json& value) {
     if (event == json::parse_event_t::object_start) open_objects.emplace_back();
