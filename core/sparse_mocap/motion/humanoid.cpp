@@ -188,16 +188,35 @@ void fill_missing_bones(HumanoidMapping& mapping) {
     if (mapping.bones[j].norm() < kNoBone_m) mapping.bones[j] = scale * template_bones()[j];
 }
 
-// Whether the first frame is the rest pose and the movement starts with the second.
-bool starts_with_rest_pose(const Motion& motion) {
-  constexpr double kAtRest_rad = 1e-3, kMoved_rad = 0.2;
-  if (motion.num_frames() < 3) return false;
-  double at_rest = 0.0, moved = 0.0;
-  for (int j = 0; j < motion.skeleton.num_joints(); ++j) {
-    at_rest = std::max(at_rest, Eigen::AngleAxisd(motion.rotation(0, j)).angle());
-    moved = std::max(moved, motion.rotation(0, j).angularDistance(motion.rotation(1, j)));
+// The largest turn of a joint from a frame to the next.
+double turn_after(const Motion& motion, int frame) {
+  double largest = 0.0;
+  for (int j = 0; j < motion.skeleton.num_joints(); ++j)
+    largest =
+        std::max(largest, motion.rotation(frame, j).angularDistance(motion.rotation(frame + 1, j)));
+  return largest;
+}
+
+bool is_at_rest(const Motion& motion, int frame) {
+  constexpr double kAtRest_rad = 1e-3;
+  for (int j = 0; j < motion.skeleton.num_joints(); ++j)
+    if (Eigen::AngleAxisd(motion.rotation(frame, j)).angle() > kAtRest_rad) return false;
+  return true;
+}
+
+// How many frames stand before the movement: exporters put a rest pose or a T-pose there. From a
+// T-pose the arms fall by a right angle within one frame, and the next frames move far less.
+int num_leading_rest_frames(const Motion& motion) {
+  constexpr int kLongestLead = 3;
+  constexpr double kMoved_rad = 0.2, kFallen_rad = 1.0, kCalmer = 2.5;
+  int leading = 0;
+  for (int t = 0; t < kLongestLead && t + 2 < motion.num_frames(); ++t) {
+    const double turn = turn_after(motion, t);
+    const bool is_rest = t == 0 && turn > kMoved_rad && is_at_rest(motion, 0);
+    if (is_rest || (turn > kFallen_rad && turn > kCalmer * turn_after(motion, t + 1)))
+      leading = t + 1;
   }
-  return at_rest < kAtRest_rad && moved > kMoved_rad;
+  return leading;
 }
 
 // One frame's local rotations on the standard skeleton.
@@ -242,11 +261,9 @@ Motion to_standard(const Motion& source, const HumanoidMapping& mapping, const S
   Motion out;
   out.skeleton = standard;
   out.frame_time_s = source.frame_time_s;
-  int begin = 0;
-  if (starts_with_rest_pose(source)) {
-    begin = 1;
-    if (warnings != nullptr) warnings->emplace_back("the leading rest pose frame was dropped");
-  }
+  const int begin = num_leading_rest_frames(source);
+  if (begin > 0 && warnings != nullptr)
+    warnings->push_back("a leading rest pose was dropped, frames: " + std::to_string(begin));
   std::vector<double> angles(kNumStandardAngles, 0.0);
   for (int t = begin; t < source.num_frames(); ++t) {
     const JointTransforms transforms = source.transforms(t);

@@ -36,8 +36,9 @@ struct HumanoidMapping {
 HumanoidMapping map_humanoid(const Skeleton& source);
 
 // The source's movement on a standard skeleton: world rotations are carried over joint by joint,
-// root translation is scaled by the ratio of leg lengths so that feet do not slide. A leading rest
-// pose frame is dropped (it makes accelerations of thousands of m/s^2) and reported in warnings.
+// root translation is scaled by the ratio of leg lengths so that feet do not slide. A rest pose or
+// T-pose that exporters put before the movement is dropped (it makes accelerations of thousands of
+// m/s^2) and reported in warnings.
 Motion to_standard(const Motion& source, const HumanoidMapping& mapping, const Skeleton& standard,
                    std::vector<std::string>* warnings = nullptr);
 
