@@ -112,7 +112,8 @@ void OnlineLazyNeighbourhoodGraph::extend(std::span<const Neighbour> neighbours)
     paths_.push_back({node.frame, node.reward, node.length, previous_frame});
   }
   columns_.push_back(std::move(column));
-  const auto kept = static_cast<std::size_t>(std::max(config_.window, 2));
+  // One more than the window: a step over a column may leave it from there.
+  const auto kept = static_cast<std::size_t>(std::max(config_.window + 1, 2));
   if (columns_.size() > kept) columns_.pop_front();
   ++now_;
 }
