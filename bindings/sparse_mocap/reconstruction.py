@@ -14,11 +14,14 @@ from .take import Take
 
 Floats = NDArray[np.float64]
 
-LARGEST_MISFIT = 0.6
-"""Of the readings' own variation; above it retrieved readings say little about measured ones."""
+LARGEST_MISFIT = 0.78
+"""As a part of how much the readings vary.
 
-LARGEST_SPREAD_M = 0.25
-"""Above it the retrieved poses agree on next to nothing."""
+Of HDM05 and CMU clips reconstructed from other people's or other motions, two in three of those
+that came out worse than a constant pose are above it, and one in eight of the better ones.
+"""
+
+_QUIET_MPS2 = 1.0  # readings that vary less than this fit anything
 
 
 def latency_ms(reconstructor: Reconstructor, database: MotionDatabase) -> float:
@@ -33,15 +36,16 @@ def mean_misfit_mps2(solved: Reconstruction) -> float:
 
 def relative_misfit(solved: Reconstruction, readings: Floats) -> float:
     """Returns the misfit as a part of how much the readings (T, S, 3) vary; 0 is a perfect fit."""
-    deviations = readings - np.nanmean(readings, axis=0)
-    variation = float(np.sqrt(np.nanmean((deviations**2).sum(axis=2))))
-    return mean_misfit_mps2(solved) / max(variation, 1.0)
+    variation = []
+    for sensor in np.moveaxis(readings, 1, 0):
+        heard = sensor[np.isfinite(sensor).all(axis=1)]
+        variation.extend(np.linalg.norm(heard - heard.mean(axis=0), axis=1) if len(heard) else ())
+    return mean_misfit_mps2(solved) / max(float(np.mean(variation or [0.0])), _QUIET_MPS2)
 
 
 def is_unlike_the_database(solved: Reconstruction, readings: Floats) -> bool:
     """Whether the database holds nothing like the performance, so that the result is a guess."""
-    spread = _mean(np.asarray(solved.spread_m))
-    return relative_misfit(solved, readings) > LARGEST_MISFIT or spread > LARGEST_SPREAD_M
+    return relative_misfit(solved, readings) > LARGEST_MISFIT
 
 
 def suspicions(take: Take) -> list[str]:
@@ -49,10 +53,10 @@ def suspicions(take: Take) -> list[str]:
     lines = []
     for site, record in take.sensors.items():
         size = float(np.median(np.linalg.norm(record.specific_force, axis=1)))
-        if not 0.6 * GRAVITY_MPS2 < size < 1.6 * GRAVITY_MPS2:
+        if not 0.6 * GRAVITY_MPS2 < size < 10 * GRAVITY_MPS2:
             lines.append(
-                f"{site} reads {size:.2f} m/s^2 most of the time, not about {GRAVITY_MPS2:.2f}; "
-                "ax,ay,az are m/s^2 and include gravity"
+                f"{site} reads {size:.2f} m/s^2 on median, where gravity alone is "
+                f"{GRAVITY_MPS2:.2f}; ax,ay,az are in m/s^2 and include gravity"
             )
         elif np.ptp(record.specific_force, axis=0).max() == 0:
             lines.append(f"{site} always reads the same")
@@ -60,7 +64,11 @@ def suspicions(take: Take) -> list[str]:
 
 
 def report(
-    database: MotionDatabase, sites: list[str], times_s: Floats, solved: Reconstruction
+    database: MotionDatabase,
+    sites: list[str],
+    times_s: Floats,
+    readings: Floats,
+    solved: Reconstruction,
 ) -> dict[str, Any]:
     """Returns, as JSON has it, what the reconstruction says of the whole take and each frame."""
     names = [_full_name(clip) for clip in database.clips]
@@ -79,6 +87,8 @@ def report(
     ]
     return {
         "sites": sites,
+        "relative_misfit": _rounded(relative_misfit(solved, readings)),
+        "is_unlike_the_database": is_unlike_the_database(solved, readings),
         "mean_misfit_mps2": _rounded(_mean(misfit)),
         "mean_spread_m": _rounded(_mean(spread)),
         "clips": dict(Counter(leant_on).most_common()),

@@ -86,9 +86,9 @@ def reconstruct(
         options = {"method": method, "preset": preset, "offline": offline, "places": where}
         about = {"take": str(take), "database": str(database_path), "options": options,
                  "rate_hz": database.rate_hz, "latency_frames": reconstructor.latency_frames,
-                 "latency_ms": late,
-                 "is_unlike_the_database": is_unlike_the_database(solved, readings)}  # fmt: skip
-        write_json(json_path, about | report(database, recorded.sites, times, solved))
+                 "latency_ms": late}  # fmt: skip
+        told = report(database, recorded.sites, times, readings, solved)
+        write_json(json_path, about | told)
     warn(suspicions(recorded))
     _tell(output, solved, readings, late)
 
