@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -63,8 +64,8 @@ struct Config {
   double foot_lock = 0.0;
 
   // Offline only.
-  double offline_sharpness = 1.0;
   double offline_smoothing_s = 0.0;     // standard deviation of the final low-pass
+  std::shared_ptr<const Config> offline;  // what to use instead of these settings; null: nothing
 
   // Throws ConfigError naming the setting and its range.
   void validate() const;

@@ -72,6 +72,7 @@ Reconstructor::Reconstructor(std::shared_ptr<const MotionDatabase> database,
     : database_(std::move(database)),
       sensors_(std::move(sensors)),
       config_(validated(config, sensors_)),
+      excluded_clips_(excluded_clips),
       column_weights_(column_weights(sensors_, config_.leg_weight)),
       readings_(database_readings(*database_, sensors_)),
       index_(database_features(*database_, readings_, config_.features, column_weights_),
@@ -237,6 +238,13 @@ void Reconstructor::describe_retrieval(const Neighbourhood& neighbours, const Wi
 
 std::vector<PoseEstimate> Reconstructor::solve(const std::vector<Reading>& take,
                                                const Progress& progress) {
+  if (!config_.offline) return solve_both_ways(take, progress);
+  Reconstructor offline(database_, sensors_, *config_.offline, excluded_clips_);
+  return offline.solve_both_ways(take, progress);
+}
+
+std::vector<PoseEstimate> Reconstructor::solve_both_ways(const std::vector<Reading>& take,
+                                                         const Progress& progress) {
   reset();
   FeatureRows readings(static_cast<Eigen::Index>(take.size()), readings_.cols());
   for (std::size_t t = 0; t < take.size(); ++t)
@@ -253,7 +261,7 @@ std::vector<PoseEstimate> Reconstructor::solve(const std::vector<Reading>& take,
   for (std::size_t t = 0; t < frames; ++t) {
     progress.report(frames + t, 2 * frames, "reconstructing");
     auto paths = best_paths(retrieval.paths(t), config_.num_paths);
-    auto weights = path_weights(paths, config_.weight_rule, config_.offline_sharpness);
+    auto weights = path_weights(paths, config_.weight_rule, config_.sharpness);
     estimates.push_back(
         synthesize(std::move(paths), std::move(weights),
                    {readings, 0, readings.rows(), static_cast<Eigen::Index>(t)}));

@@ -40,6 +40,8 @@ class Reconstructor : public Method {
   Reading reading_at(const Window& window) const;
   void search(const Window& window, std::vector<Neighbour>& out) const;
   PoseEstimate estimate_online(const Window& window);
+  std::vector<PoseEstimate> solve_both_ways(const std::vector<Reading>& take,
+                                            const Progress& progress);
   PoseEstimate synthesize(std::vector<Path> paths, Eigen::VectorXd weights, const Window& window);
   void correct_poses(Neighbourhood& neighbours, const Window& window) const;
   Eigen::VectorXd minimize_energy(const Neighbourhood& neighbours) const;
@@ -51,6 +53,7 @@ class Reconstructor : public Method {
   std::shared_ptr<const MotionDatabase> database_;
   std::vector<WornSensor> sensors_;
   Config config_;
+  std::vector<int> excluded_clips_;
   std::vector<float> column_weights_;
   int look_ahead_ = 0;
   int reach_back_ = 0;
