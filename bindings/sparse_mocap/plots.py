@@ -48,8 +48,9 @@ def plot_errors_over_time(
         axes.plot(times, errors, color=colour, linewidth=1.4, label=f"{name}, mean {mean:.1f} cm")
         axes.axhline(mean, color=colour, linewidth=1.0, linestyle="--")
     axes.set(xlabel="time (s)", ylabel="RMS error over the joints (cm)", title=title)
+    axes.margins(x=0.01, y=0.2)
     axes.set_ylim(bottom=0)
-    axes.margins(x=0.01)
+    axes.legend(frameon=False, loc="upper left", ncols=len(curves))
     return _saved(figure, axes, path)
 
 
@@ -66,6 +67,7 @@ def _histogram(evaluation: Evaluation, path: Path) -> Path:
         title=f"Scenario {evaluation.scenario}: error of each frame",
     )
     axes.set_xlim(left=0)
+    _legend_beside(axes)
     return _saved(figure, axes, path)
 
 
@@ -80,6 +82,7 @@ def _bars(groups: Mapping[str, Mapping[str, float]], title: str, path: Path) -> 
     axes.set_xticks(range(len(labels)), labels, rotation=45, ha="right")
     axes.set(ylabel="mean error (cm)", title=title)
     axes.margins(x=0.01)
+    _legend_beside(axes)
     return _saved(figure, axes, path)
 
 
@@ -88,10 +91,13 @@ def _figure(width: float, height: float) -> tuple[Figure, Axes]:
     return figure, figure.add_subplot()
 
 
+def _legend_beside(axes: Axes) -> None:
+    axes.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+
+
 def _saved(figure: Figure, axes: Axes, path: Path) -> Path:
     axes.grid(axis="y", color="#dddddd", linewidth=0.6)
     axes.set_axisbelow(True)
-    axes.legend(frameon=False, fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     with replaced(path) as temporary:
         figure.savefig(temporary, dpi=130)
     return path
