@@ -239,17 +239,24 @@ void fill_readings(const Motion& motion, const std::vector<double>& wanted_s, Da
   }
 }
 
+// The height of the floor: zero, as recordings have it, unless the ankles never come near it.
+double floor_height(const std::vector<JointTransforms>& poses) {
+  constexpr double kStandingAnkle_m = 0.08, kHighestStandingAnkle_m = 0.25;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& pose : poses)
+    for (const auto ankle : {standard_joint::ltibia, standard_joint::rtibia})
+      lowest = std::min(lowest, pose.end[ankle].y());
+  const bool is_on_the_floor = lowest >= 0.0 && lowest <= kHighestStandingAnkle_m;
+  return is_on_the_floor ? 0.0 : lowest - kStandingAnkle_m;
+}
+
 // Root motion as rates in the heading frame (method: integrated by root_motion of tautges2011).
 DatabaseRows::Rows root_motion_rows(const Motion& motion, const std::vector<double>& yaw) {
   using namespace root_motion_column;
   const int n = motion.num_frames();
-  double floor = std::numeric_limits<double>::infinity();
-  std::vector<double> heights;
-  for (int t = 0; t < n; ++t) {
-    const JointTransforms at = motion.transforms(t);
-    heights.push_back(at.end[0].y());
-    for (const auto& end : at.end) floor = std::min(floor, end.y());
-  }
+  std::vector<JointTransforms> poses;
+  for (int t = 0; t < n; ++t) poses.push_back(motion.transforms(t));
+  const double floor = floor_height(poses);
   DatabaseRows::Rows rows(n, count);
   for (int t = 0; t < n; ++t) {
     const auto now = static_cast<std::size_t>(std::max(t, 1));
@@ -260,7 +267,7 @@ DatabaseRows::Rows root_motion_rows(const Motion& motion, const std::vector<doub
     rows(t, velocity_left) = static_cast<float>(step.x());
     rows(t, velocity_forward) = static_cast<float>(step.z());
     rows(t, yaw_rate) = static_cast<float>((yaw[now] - yaw[before]) / motion.frame_time_s);
-    rows(t, height) = static_cast<float>(heights[static_cast<std::size_t>(t)] - floor);
+    rows(t, height) = static_cast<float>(poses[static_cast<std::size_t>(t)].end[0].y() - floor);
   }
   return rows;
 }
