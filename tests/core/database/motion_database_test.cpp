@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/database/motion_database.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "formats/format_test_support.hpp"
+#include "sparse_mocap/base/files.hpp"
+#include "sparse_mocap/database/safetensors.hpp"
+#include "support/synthetic.hpp"
+
+namespace sparse_mocap {
+namespace {
+
+using testing::contains;
+using testing::content_of;
+using testing::database_of;
+using testing::swaying_motion;
+using testing::template_skeleton;
+using testing::TemporaryFolder;
+
+DatabaseContent small_content(int frames) {
+  return content_of({swaying_motion(template_skeleton(), 1, frames, 25.0)}, 25.0);
+}
+
+// What opening these bytes as a database complains about, "" if nothing.
+std::string complaint(std::vector<std::byte> file) {
+  try {
+    MotionDatabase::from_bytes(own_bytes(std::move(file)), "motions.smdb");
+  } catch (const FormatError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with("motions.smdb: ")) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+// The file with its arrays and metadata changed, checksums put right again.
+template <typename Change>
+std::vector<std::byte> forged(const std::vector<std::byte>& file, const Change& change) {
+  const SafetensorsView view = parse_safetensors(file, "f");
+  auto metadata = view.metadata;
+  std::map<std::string, std::vector<std::byte>> arrays;
+  for (const auto& t : view.tensors) arrays[t.name] = {t.bytes.begin(), t.bytes.end()};
+  change(metadata, arrays);
+  nlohmann::json sums;
+  std::vector<Tensor> tensors;
+  for (const auto& t : view.tensors) {
+    sums[t.name] = checksum(arrays[t.name]);
+    tensors.push_back({t.name, t.type, t.shape, arrays[t.name]});
+  }
+  metadata["checksums"] = sums.dump();
+  metadata.erase("metadata_checksum");
+  std::string all;
+  for (const auto& [key, value] : metadata) all += key + '\0' + value + '\0';
+  metadata["metadata_checksum"] = checksum(std::as_bytes(std::span(all)));
+  const std::string header = safetensors_header(metadata, tensors);
+  std::vector<std::byte> out(header.size());
+  std::memcpy(out.data(), header.data(), header.size());
+  for (const auto& t : tensors) out.insert(out.end(), t.bytes.begin(), t.bytes.end());
+  return out;
+}
+
+using Metadata = std::map<std::string, std::string>;
+using Arrays = std::map<std::string, std::vector<std::byte>>;
+
+TEST(MotionDatabase, GivesBackWhatWasWritten) {
+  const DatabaseContent content = content_of({swaying_motion(template_skeleton(), 1, 50, 50.0),
+                                              swaying_motion(template_skeleton(), 2, 37, 50.0)},
+                                             25.0);
+  const TemporaryFolder folder;
+  const auto file = encode_database(content);
+  const std::span<const std::byte> piece(file);
+  write_file_atomically(folder / "motions.smdb", std::span(&piece, 1));
+  const auto database = MotionDatabase::open(folder / "motions.smdb");
+  EXPECT_EQ(database->path(), folder / "motions.smdb");
+  EXPECT_EQ(database->rate_hz(), 25.0);
+  EXPECT_EQ(database->build_info(), "{}");
+  EXPECT_EQ(bones_of(database->skeleton()), bones_of(content.skeleton));
+  EXPECT_EQ(database->site_names().size(), all_sites().size());
+  ASSERT_EQ(database->clips().size(), 2U);
+  EXPECT_EQ(database->num_frames(), 25 + 19);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const Clip& clip = database->clips()[c];
+    const DatabaseRows& rows = content.clip_rows[c];
+    EXPECT_EQ(clip.name, content.clips[c].name);
+    EXPECT_EQ(clip.num_frames(), rows.num_frames());
+    const auto same = [&](const FloatRows& read, const DatabaseRows::Rows& written) {
+      EXPECT_EQ(read.middleRows(clip.begin, clip.num_frames()), written);
+    };
+    same(database->angles(), rows.angles);
+    same(database->positions(), rows.positions);
+    same(database->root_motion(), rows.root_motion);
+    same(database->contacts(), rows.contacts);
+    same(database->specific_force_pivot(), rows.specific_force_pivot);
+    same(database->specific_force_end(), rows.specific_force_end);
+    same(database->angular_velocity(), rows.angular_velocity);
+    same(database->up(), rows.up);
+    for (int n = clip.begin; n < clip.end; ++n)
+      EXPECT_EQ(database->clip_index(n), static_cast<int>(c));
+  }
+}
+
+TEST(MotionDatabase, RefusesContentThatDoesNotCorrespond) {
+  DatabaseContent content = small_content(5);
+  content.clips.clear();
+  EXPECT_THROW(encode_database(content), std::invalid_argument);
+  content.clips.resize(2);
+  EXPECT_THROW(encode_database(content), std::invalid_argument);
+}
+
+TEST(MotionDatabase, RefusesMissingFilesAndFolders) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(MotionDatabase::open(folder / "none.smdb"), FormatError);
+  EXPECT_THROW(MotionDatabase::open(folder.path()), FormatError);
+  folder.write("empty.smdb", "");
+  EXPECT_THROW(MotionDatabase::open(folder / "empty.smdb"), FormatError);
+}
+
+TEST(MotionDatabase, RefusesAFileCutAtAnyLength) {
+  const auto file = encode_database(small_content(3));
+  ASSERT_EQ(complaint(file), "");
+  for (std::size_t length = 0; length < file.size(); ++length)
+    ASSERT_NE(complaint({file.begin(), file.begin() + static_cast<std::ptrdiff_t>(length)}), "")
+        << "cut to " << length << " of " << file.size();
+  auto longer = file;
+  longer.push_back(std::byte{0});
+  EXPECT_TRUE(contains(complaint(longer), "bytes follow the last array"));
+}
+
+TEST(MotionDatabase, RefusesAFileWithAnyByteDamaged) {
+  const auto file = encode_database(small_content(3));
+  for (std::size_t i = 0; i < file.size(); ++i) {
+    auto damaged = file;
+    damaged[i] ^= std::byte{static_cast<unsigned char>(1U << (i * 5 % 8))};
+    ASSERT_NE(complaint(damaged), "")
+        << "byte " << i << " of "
+        << std::string(reinterpret_cast<const char*>(&damaged[i - std::min<std::size_t>(i, 30)]),
+                       60);
+  }
+}
+
+TEST(MotionDatabase, NamesTheArrayThatIsDamaged) {
+  auto file = encode_database(small_content(3));
+  file[file.size() - 20] ^= std::byte{1};
+  EXPECT_TRUE(contains(complaint(file), "the array 'up' does not match its checksum"));
+}
+
+TEST(MotionDatabase, RefusesAnotherVersionNamingBoth) {
+  const auto file = forged(encode_database(small_content(3)),
+                           [](Metadata& metadata, Arrays&) { metadata["format_version"] = "999"; });
+  EXPECT_TRUE(contains(complaint(file), "format version 999, this is version " +
+                                            std::to_string(kDatabaseFormatVersion)))
+      << complaint(file);
+}
+
+TEST(MotionDatabase, RefusesClaimsThatAreChecksummedButFalse) {
+  const auto file = encode_database(small_content(4));
+  const auto expect = [&](const std::string& key, const std::string& value,
+                          const std::string& part) {
+    const auto text =
+        complaint(forged(file, [&](Metadata& metadata, Arrays&) { metadata[key] = value; }));
+    EXPECT_TRUE(contains(text, part)) << key << " = " << value << " -> " << text;
+  };
+  EXPECT_EQ(complaint(forged(file, [](Metadata&, Arrays&) {})), "");
+  expect("format", "something", "something else");
+  expect("rate_hz", "0", "frame rate");
+  expect("rate_hz", "1e9", "frame rate");
+  expect("rate_hz", "fast", "metadata is damaged");
+  expect("sites", "[]", "no sensor sites");
+  expect("sites", "[\"head\"]", "columns");
+  expect("skeleton", "[]", "21 joints");
+  expect("clips", "[]", "without a clip");
+  expect("clips", "{", "metadata is damaged");
+  expect("clips", "[{\"name\":\"a\"}]", "metadata is damaged");
+}
+
+TEST(MotionDatabase, RefusesClipsThatDoNotCoverTheFrames) {
+  const auto file = encode_database(small_content(6));
+  const auto with_range = [&](int begin, int end) {
+    return complaint(forged(file, [&](Metadata& metadata, Arrays&) {
+      auto clips = nlohmann::json::parse(metadata["clips"]);
+      clips[0]["begin"] = begin;
+      clips[0]["end"] = end;
+      metadata["clips"] = clips.dump();
+    }));
+  };
+  EXPECT_EQ(with_range(0, 6), "");
+  for (const auto& [begin, end] : {std::pair{1, 6}, {0, 5}, {0, 7}, {0, 0}, {3, 2}, {-1, 6}})
+    EXPECT_NE(with_range(begin, end), "") << begin << " " << end;
+  EXPECT_TRUE(contains(
+      complaint(
+          forged(file, [](Metadata&, Arrays& arrays) { arrays["clip_index"][4] = std::byte{1}; })),
+      "names another clip"));
+}
+
+TEST(MotionDatabase, RefusesValuesThatAreNoNumbers) {
+  const auto file = encode_database(small_content(4));
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity()}) {
+    for (const std::string name :
+         {"angles", "positions", "root_motion", "contacts", "up", "specific_force_pivot",
+          "specific_force_end", "angular_velocity"}) {
+      const auto text = complaint(forged(file, [&](Metadata&, Arrays& arrays) {
+        std::memcpy(arrays[name].data() + arrays[name].size() - 4, &bad, 4);
+      }));
+      EXPECT_TRUE(contains(text, "not a number")) << name << text;
+    }
+  }
+}
+
+TEST(MotionDatabase, KeepsItsContentWhenTheFileIsReplaced) {
+  const TemporaryFolder folder;
+  const auto path = folder / "motions.smdb";
+  const auto write = [&](const std::vector<std::byte>& file) {
+    const std::span<const std::byte> piece(file);
+    write_file_atomically(path, std::span(&piece, 1));
+  };
+  write(encode_database(small_content(30)));
+  const auto database = MotionDatabase::open(path);
+  const DatabaseRows::Rows before = database->angles();
+  write(encode_database(small_content(4)));
+  EXPECT_EQ(DatabaseRows::Rows(database->angles()), before);
+  EXPECT_EQ(MotionDatabase::open(path)->num_frames(), 4);
+}
+
+}  // namespace
+}  // namespace sparse_mocap

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/synthetic.hpp"
+
+#include <cmath>
+
+#include "sparse_mocap/database/builder.hpp"
+#include "sparse_mocap/sensors/sites.hpp"
+
+namespace sparse_mocap::testing {
+
+Skeleton template_skeleton() { return make_standard_skeleton(template_bones()); }
+
+Motion resting_motion(const Skeleton& skeleton, int frames, double rate_hz, double height_m) {
+  Motion motion;
+  motion.skeleton = skeleton;
+  motion.frame_time_s = 1.0 / rate_hz;
+  motion.root_positions.assign(static_cast<std::size_t>(frames), Vec3(0.0, height_m, 0.0));
+  motion.rotations.assign(static_cast<std::size_t>(frames * skeleton.num_joints()),
+                          Quat::Identity());
+  return motion;
+}
+
+Motion swaying_motion(const Skeleton& skeleton, unsigned seed, int frames, double rate_hz) {
+  Random random(seed);
+  const auto n = skeleton.num_angles();
+  const Eigen::VectorXd offset = random.column(n, 0.3);
+  const Eigen::VectorXd amplitude = random.column(n, 0.4);
+  const Eigen::VectorXd phase = random.column(n, kPi);
+  const double pace_hz = random.in(0.5, 1.2), speed_mps = random.in(0.3, 1.2);
+  const double turning_radps = random.in(-0.5, 0.5);
+  Motion motion = resting_motion(skeleton, frames, rate_hz);
+  for (int t = 0; t < frames; ++t) {
+    const double time_s = t / rate_hz;
+    const double turn = 2.0 * kPi * pace_hz * time_s;
+    const Eigen::VectorXd angles =
+        offset.array() + amplitude.array() * (phase.array() + turn).sin();
+    for (int j = 0; j < skeleton.num_joints(); ++j)
+      motion.rotation(t, j) =
+          Quat(joint_rotation(skeleton.joint(j), angles.data() + skeleton.angle_begin(j)));
+    const double yaw = turning_radps * time_s;
+    motion.rotation(t, 0) = Quat(Eigen::AngleAxisd(yaw, kUp)) * motion.rotation(t, 0);
+    motion.root_positions[static_cast<std::size_t>(t)] = {
+        0.05 * std::sin(turn), 0.9 + 0.03 * std::sin(2.0 * turn), speed_mps * time_s};
+  }
+  return motion;
+}
+
+DatabaseContent content_of(const std::vector<Motion>& motions, double rate_hz) {
+  DatabaseContent content;
+  content.skeleton = motions.front().skeleton;
+  content.rate_hz = rate_hz;
+  content.build_info = "{}";
+  for (std::size_t c = 0; c < motions.size(); ++c) {
+    const std::string name = "clip" + std::to_string(c);
+    Clip clip;
+    clip.name = name;
+    clip.actor = "actor";
+    clip.motion_class = "class";
+    clip.source = name + ".bvh";
+    clip.source_hash = "0123456789abcdef";
+    content.clips.push_back(clip);
+    content.clip_rows.push_back(database_rows(motions[c], rate_hz));
+  }
+  return content;
+}
+
+std::shared_ptr<const MotionDatabase> database_of(const DatabaseContent& content) {
+  return MotionDatabase::from_bytes(own_bytes(encode_database(content)), "memory.smdb");
+}
+
+std::shared_ptr<const MotionDatabase> database_of(const std::vector<Motion>& motions,
+                                                  double rate_hz) {
+  return database_of(content_of(motions, rate_hz));
+}
+
+std::vector<WornSensor> paper_sensors() {
+  std::vector<WornSensor> sensors;
+  for (const int site : paper_sites()) sensors.push_back({site, 1.0});
+  return sensors;
+}
+
+std::vector<Reading> readings_of(const MotionDatabase& database, int clip,
+                                 const std::vector<WornSensor>& sensors) {
+  const Clip& wanted = database.clips()[static_cast<std::size_t>(clip)];
+  std::vector<Reading> readings;
+  for (int frame = wanted.begin; frame < wanted.end; ++frame) {
+    Reading reading(3, static_cast<Eigen::Index>(sensors.size()));
+    for (std::size_t s = 0; s < sensors.size(); ++s) {
+      const Eigen::Index column = 3 * sensors[s].site;
+      const Vec3 pivot =
+          database.specific_force_pivot().row(frame).segment<3>(column).cast<double>();
+      const Vec3 end = database.specific_force_end().row(frame).segment<3>(column).cast<double>();
+      reading.col(static_cast<Eigen::Index>(s)) = pivot + sensors[s].place * (end - pivot);
+    }
+    readings.push_back(reading);
+  }
+  return readings;
+}
+
+}  // namespace sparse_mocap::testing

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Made-up bodies, movements and databases that tests and benchmarks share.
+#pragma once
+
+#include <memory>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sparse_mocap/database/motion_database.hpp"
+#include "sparse_mocap/motion/motion.hpp"
+#include "sparse_mocap/motion/standard_skeleton.hpp"
+#include "sparse_mocap/reconstruction/method.hpp"
+
+namespace sparse_mocap::testing {
+
+// The same sequence on every machine: std distributions may differ, so none is used.
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+
+  double in(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_()) / 4294967295.0;
+  }
+  int below(int limit) { return static_cast<int>(engine_() % static_cast<unsigned>(limit)); }
+  Vec3 vector(double size) { return {in(-size, size), in(-size, size), in(-size, size)}; }
+  Eigen::VectorXd column(Eigen::Index n, double size) {
+    Eigen::VectorXd out(n);
+    for (auto& value : out) value = in(-size, size);
+    return out;
+  }
+  Eigen::MatrixXd matrix(Eigen::Index rows, Eigen::Index columns, double size) {
+    Eigen::MatrixXd out(rows, columns);
+    for (auto& value : out.reshaped()) value = in(-size, size);
+    return out;
+  }
+  Quat rotation() { return Quat(in(-1, 1), in(-1, 1), in(-1, 1), in(-1, 1) + 1e-3).normalized(); }
+
+ private:
+  std::mt19937 engine_;
+};
+
+Skeleton template_skeleton();
+
+// A motion of a standard skeleton that stands still in rest pose, its root at height_m.
+Motion resting_motion(const Skeleton& skeleton, int frames, double rate_hz, double height_m = 0.9);
+
+// A smooth movement of all joints while the body walks and turns; seeds differ in pace and pose.
+Motion swaying_motion(const Skeleton& skeleton, unsigned seed, int frames, double rate_hz);
+
+// The database of motions on one standard skeleton, as the builder would make it, and its bytes.
+DatabaseContent content_of(const std::vector<Motion>& motions, double rate_hz);
+std::shared_ptr<const MotionDatabase> database_of(const DatabaseContent& content);
+std::shared_ptr<const MotionDatabase> database_of(const std::vector<Motion>& motions,
+                                                  double rate_hz = 25.0);
+
+// left_wrist, right_wrist, left_ankle, right_ankle at the ends of their bones.
+std::vector<WornSensor> paper_sensors();
+
+// What the database's own virtual sensors read in one of its clips.
+std::vector<Reading> readings_of(const MotionDatabase& database, int clip,
+                                 const std::vector<WornSensor>& sensors);
+
+}  // namespace sparse_mocap::testing

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/tautges2011/minimizer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "formats/format_test_support.hpp"
+#include "tautges2011/ceres_minimizer.hpp"
+#include "tautges2011/hdm05.hpp"
+#include "tautges2011/neighbourhoods.hpp"
+
+namespace sparse_mocap::tautges2011 {
+namespace {
+
+using testing::all_terms;
+using testing::ceres_minimum;
+using testing::Random;
+using testing::retrieved_neighbourhood;
+using testing::swaying_motion;
+using testing::template_skeleton;
+
+std::shared_ptr<const MotionDatabase> swaying_database() {
+  std::vector<Motion> motions;
+  for (unsigned seed = 0; seed < 8; ++seed)
+    motions.push_back(swaying_motion(template_skeleton(), seed, 120, 50.0));
+  return testing::database_of(motions);
+}
+
+// Minimises many neighbourhoods both ways from the same start and compares what is reached.
+void expect_as_low_as_ceres(const MotionDatabase& database, const Config& config, int count,
+                            const std::string& what) {
+  Random random(1);
+  double worst = 0.0, mean = 0.0, iterations = 0.0, components = 0.0;
+  int lower = 0;
+  for (int trial = 0; trial < count; ++trial) {
+    const Neighbourhood found = retrieved_neighbourhood(database, random, 64);
+    const Energy energy(database.skeleton(), found.weights, all_terms(database, found, config));
+    const PoseSubspace subspace = weighted_pca(found.angles, found.weights, 0.99);
+    // Every pose of the neighbourhood is a minimum of its own; the way between is open.
+    const Eigen::VectorXd start = 0.5 * (found.angles.col(random.below(64)) + subspace.mean);
+    const Minimum ours = minimize(energy, subspace, {start}, 200);
+    const double theirs = ceres_minimum(energy, subspace, start);
+    EXPECT_TRUE(ours.is_converged);
+    const double gap = (ours.energy - theirs) / theirs;
+    worst = std::max(worst, gap);
+    // Where the other found a deeper valley, ours is at the bottom of one as well.
+    if (gap > 1e-4) {
+      EXPECT_GE(ceres_minimum(energy, subspace, ours.angles), ours.energy * (1.0 - 1e-4));
+    }
+    mean += gap / count;
+    iterations += static_cast<double>(ours.iterations) / count;
+    components += static_cast<double>(subspace.basis.cols()) / count;
+    lower += gap <= 1e-4 ? 1 : 0;
+  }
+  std::cout << what << ": of " << count << " neighbourhoods " << lower
+            << " as low as Ceres; relative gap mean " << mean << ", worst " << worst << "; "
+            << iterations << " iterations, " << components << " components on average\n";
+  EXPECT_GE(lower, count * 95 / 100);
+}
+
+TEST(Minimize, NeedsAStart) {
+  const auto database = swaying_database();
+  Random random(2);
+  const Neighbourhood found = retrieved_neighbourhood(*database, random, 16);
+  const Energy energy(database->skeleton(), found.weights, all_terms(*database, found, {}));
+  const PoseSubspace subspace = weighted_pca(found.angles, found.weights, 0.99);
+  EXPECT_THROW(minimize(energy, subspace, {}, 10), std::invalid_argument);
+}
+
+TEST(Minimize, EndsAsLowAsCeresOnSyntheticNeighbourhoods) {
+  expect_as_low_as_ceres(*swaying_database(), preset("paper"), 60, "synthetic, square roots");
+  Config squares = preset("paper");
+  squares.kernel_power = 2.0;
+  expect_as_low_as_ceres(*swaying_database(), squares, 20, "synthetic, squares");
+}
+
+TEST(Minimize, EndsAsLowAsCeresOnHdm05) {
+  SKIP_WITHOUT_REAL_DATA("hdm05/HDM_bd.asf");
+  const auto database = testing::hdm05_database(6);
+  expect_as_low_as_ceres(*database, preset("paper"), 100, "HDM05, square roots");
+}
+
+TEST(Minimize, NeverLetsTheEnergyRise) {
+  const auto database = swaying_database();
+  Random random(3);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Neighbourhood found = retrieved_neighbourhood(*database, random, 32);
+    const Energy energy(database->skeleton(), found.weights, all_terms(*database, found, {}));
+    const PoseSubspace subspace = weighted_pca(found.angles, found.weights, 0.99);
+    const Eigen::VectorXd start = subspace.mean + random.column(43, 0.5);
+    double last = energy.value(subspace.pose(subspace.coordinates(start)));
+    for (int iterations = 1; iterations < 15; ++iterations) {
+      const Minimum minimum = minimize(energy, subspace, {start}, iterations);
+      EXPECT_LE(minimum.energy, last + 1e-12);
+      EXPECT_LE(minimum.iterations, iterations);
+      EXPECT_NEAR(minimum.energy, energy.value(minimum.angles), 1e-9);
+      EXPECT_LT((minimum.angles - subspace.pose(subspace.coordinates(minimum.angles))).norm(),
+                1e-9);
+      last = minimum.energy;
+    }
+  }
+}
+
+TEST(Minimize, DescendsFromTheBestStart) {
+  const auto database = swaying_database();
+  Random random(4);
+  const Neighbourhood found = retrieved_neighbourhood(*database, random, 32);
+  const Energy energy(database->skeleton(), found.weights, all_terms(*database, found, {}));
+  const PoseSubspace subspace = weighted_pca(found.angles, found.weights, 0.99);
+  const Eigen::VectorXd far = subspace.mean + random.column(43, 3.0);
+  const Eigen::VectorXd near = found.angles.col(0);
+  EXPECT_LE(minimize(energy, subspace, {far, near}, 1).energy,
+            energy.value(subspace.pose(subspace.coordinates(near))));
+  EXPECT_EQ(minimize(energy, subspace, {near, far}, 5).energy,
+            minimize(energy, subspace, {far, near}, 5).energy);
+}
+
+TEST(Minimize, FindsTheWeightedMeanOfSquares) {
+  Random random(5);
+  const Eigen::MatrixXd targets = random.matrix(43, 20, 1.0);
+  const Eigen::VectorXd weights = Eigen::VectorXd::Constant(20, 0.05);
+  const Skeleton skeleton = template_skeleton();
+  const Energy energy(skeleton, weights, {{{true, {}}, 1.0, 2.0, targets}});
+  const PoseSubspace subspace = weighted_pca(targets, weights, 0.9);
+  const Minimum minimum = minimize(energy, subspace, {targets.col(3)}, 20);
+  EXPECT_LT((minimum.angles - targets.rowwise().mean()).norm(), 1e-6);
+  EXPECT_TRUE(minimum.is_converged);
+}
+
+}  // namespace
+}  // namespace sparse_mocap::tautges2011
