@@ -52,9 +52,9 @@ def test_the_commands_work_in_their_order(library: Path, performance: Path, tmp_
 
 def test_every_verb_of_dev_that_it_names_exists() -> None:
     verbs = set(re.findall(r"\./dev ([a-z]+)", (ROOT / "README.md").read_text(encoding="utf-8")))
-    dev = (ROOT / "dev").read_text(encoding="utf-8")
+    told = subprocess.run([ROOT / "dev", "help"], capture_output=True, text=True, check=True)
     assert verbs
-    assert {verb for verb in verbs if f"verb_{verb}()" not in dev} == set()
+    assert verbs <= {line.split()[0] for line in told.stdout.splitlines() if line.strip()}
 
 
 def test_its_python_is_python() -> None:
