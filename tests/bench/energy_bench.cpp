@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Synthesis, section 5: the energy of 256 paths, its gradient and its minimum.
+#include <benchmark/benchmark.h>
+
+#include <memory>
+#include <vector>
+
+#include "sparse_mocap/tautges2011/minimizer.hpp"
+#include "support/synthetic.hpp"
+#include "tautges2011/ceres_minimizer.hpp"
+#include "tautges2011/neighbourhoods.hpp"
+
+namespace sparse_mocap {
+namespace {
+
+using tautges2011::Energy;
+using tautges2011::Neighbourhood;
+using tautges2011::PoseSubspace;
+
+// Energies as a reconstruction by the paper's preset meets them, with where each begins.
+struct Problem {
+  Energy energy;
+  PoseSubspace subspace;
+  Eigen::VectorXd start;
+};
+
+const std::vector<Problem>& problems() {
+  static const auto database = [] {
+    std::vector<Motion> motions;
+    for (unsigned seed = 0; seed < 20; ++seed)
+      motions.push_back(testing::swaying_motion(testing::template_skeleton(), seed, 400, 50.0));
+    return testing::database_of(motions);
+  }();
+  static const auto made = [] {
+    testing::Random random(1);
+    std::vector<Problem> out;
+    for (int i = 0; i < 32; ++i) {
+      const Neighbourhood found = testing::retrieved_neighbourhood(*database, random, 256);
+      const PoseSubspace subspace = tautges2011::weighted_pca(found.angles, found.weights, 0.99);
+      const Eigen::VectorXd start = 0.5 * (found.angles.col(0) + subspace.mean);
+      out.push_back({Energy(database->skeleton(), found.weights,
+                            testing::all_terms(*database, found, tautges2011::preset("paper"))),
+                     subspace, start});
+    }
+    return out;
+  }();
+  return made;
+}
+
+void energy_value_and_gradient(benchmark::State& state) {
+  Eigen::VectorXd gradient;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const Problem& problem = problems()[i++ % problems().size()];
+    benchmark::DoNotOptimize(problem.energy.value_and_gradient(problem.start, gradient));
+  }
+}
+BENCHMARK(energy_value_and_gradient)->Unit(benchmark::kMicrosecond);
+
+void minimize_by_majorising(benchmark::State& state) {
+  double energy = 0.0, iterations = 0.0;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const Problem& problem = problems()[i++ % problems().size()];
+    const auto minimum =
+        tautges2011::minimize(problem.energy, problem.subspace, {problem.start}, 50);
+    energy += minimum.energy;
+    iterations += minimum.iterations;
+  }
+  state.counters["energy"] = benchmark::Counter(energy, benchmark::Counter::kAvgIterations);
+  state.counters["steps"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(minimize_by_majorising)->Unit(benchmark::kMillisecond);
+
+// The baseline: Ceres' L-BFGS with the same gradient.
+void minimize_by_ceres(benchmark::State& state) {
+  double energy = 0.0;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const Problem& problem = problems()[i++ % problems().size()];
+    energy += testing::ceres_minimum(problem.energy, problem.subspace, problem.start);
+  }
+  state.counters["energy"] = benchmark::Counter(energy, benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(minimize_by_ceres)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace sparse_mocap
