@@ -36,7 +36,7 @@ def mean_misfit_mps2(solved: Reconstruction) -> float:
 
 def relative_misfit(solved: Reconstruction, readings: Floats) -> float:
     """Returns the misfit as a part of how much the readings (T, S, 3) vary; 0 is a perfect fit."""
-    variation = []
+    variation: list[float] = []
     for sensor in np.moveaxis(readings, 1, 0):
         heard = sensor[np.isfinite(sensor).all(axis=1)]
         variation.extend(np.linalg.norm(heard - heard.mean(axis=0), axis=1) if len(heard) else ())
