@@ -46,7 +46,7 @@ class Skeleton:
         """(J, 3) m, from the parent's end to the pivot, in the parent's frame."""
     @property
     def bones(self) -> Floats:
-        """(J, 3) m, from pivot to end, in the joint's frame; in rest pose all frames are the world's."""
+        """(J, 3) m, from pivot to end, in the joint's frame (the world's in rest pose)."""
 
 class Motion:
     """What a skeleton does, sampled evenly."""
@@ -71,7 +71,7 @@ class Motion:
     def rotations(self) -> Floats:
         """(T, J, 4) rotation of each joint relative to its parent, w x y z."""
     def joint_positions(self, frame: str = "world") -> Floats:
-        """(T, J, 3) m, the joints' ends; frame: 'heading', 'root' (standard skeleton) or 'world'."""
+        """(T, J, 3) m, the joints' ends; frame: 'heading' (standard skeleton), 'root', 'world'."""
     def resampled(self, rate_hz: float) -> Motion: ...
     def trimmed(self, begin: int, end: int) -> Motion: ...
     def reversed(self) -> Motion: ...
@@ -83,23 +83,24 @@ def read_motion(path: Path, *, amc_rate_hz: float = 120.0) -> tuple[Motion, list
 def write_bvh(path: Path, motion: Motion) -> None:
     """Writes atomically, in centimetres."""
 
-def standard_motion(
-    motion: Motion, skeleton: Skeleton | None = None
-) -> tuple[Motion, list[str]]:
-    """The motion on the standard skeleton of 21 joints (its own proportions when None), and
-    warnings. Raises MappingError."""
+def standard_motion(motion: Motion, skeleton: Skeleton | None = None) -> tuple[Motion, list[str]]:
+    """The motion on the standard skeleton of 21 joints (its own proportions when None).
+
+    Also gives warnings. Raises MappingError.
+    """
 
 def site_names() -> list[str]: ...
-
 def simulate(
     motion: Motion,
     sites: Sequence[str],
     rate_hz: float,
     places: Sequence[float] | None = None,
 ) -> dict[str, Floats]:
-    """What ideal sensors on a standard-skeleton motion read: ``time_s`` (T,), ``specific_force``
-    and ``angular_velocity`` (S, T, 3), ``orientation`` (S, T, 4, R_world_sensor). places: along the
-    carrying bone, 1 (default) at its distal end."""
+    """What ideal sensors on a standard-skeleton motion read.
+
+    ``time_s`` (T,), ``specific_force`` and ``angular_velocity`` (S, T, 3), ``orientation``
+    (S, T, 4, R_world_sensor). places: along the carrying bone, 1 (default) at its distal end.
+    """
 
 def filtered_at(times_s: ArrayLike, values: ArrayLike, wanted_s: ArrayLike) -> Floats:
     """(len(wanted), C): values (T, C) through the database's reading filter, sampled anew."""
@@ -138,8 +139,11 @@ class MotionDatabase:
     def build_info(self) -> str:
         """JSON: options and counts of the build."""
     def array(self, name: str) -> NDArray[np.float32]:
-        """A read-only view: angles, positions, root_motion, contacts, specific_force_pivot,
-        specific_force_end, angular_velocity, up."""
+        """A read-only view of the rows.
+
+        Names: angles, positions, root_motion, contacts, specific_force_pivot, specific_force_end,
+        angular_velocity, up.
+        """
     def clip_motion(self, index: int) -> Motion:
         """The clip as a motion on the standard skeleton, starting at the origin."""
 
@@ -234,8 +238,10 @@ class Reconstructor:
     def latency_frames(self) -> int:
         """How many readings an estimate of step() lags behind."""
     def step(self, specific_force: ArrayLike) -> PoseEstimate | None:
-        """Takes the next reading at the database's rate, (S, 3) m/s^2 with NaN rows for sensors
-        that are silent; gives the estimate of latency_frames ago, None until there is one."""
+        """Gives the estimate of latency_frames ago, None until there is one.
+
+        Takes the next reading at the database's rate, (S, 3) m/s^2, NaN rows for silent sensors.
+        """
     def flush(self) -> list[PoseEstimate]:
         """The estimates still owed when the performance ends."""
     def reset(self) -> None: ...
@@ -248,14 +254,24 @@ class Reconstructor:
     ) -> Reconstruction:
         """The whole take, readings (T, S, 3); offline may look at all of it for every frame."""
 
-def playback_best_path(database: MotionDatabase, sites: Sequence[str], specific_force: ArrayLike,
-                       excluded_clips: Sequence[int] = ()) -> NDArray[np.int64]:
+def playback_best_path(
+    database: MotionDatabase,
+    sites: Sequence[str],
+    specific_force: ArrayLike,
+    excluded_clips: Sequence[int] = (),
+) -> NDArray[np.int64]:
     """Baseline: for each reading the database frame at the end of the best path."""
 
-def nearest_windows(database: MotionDatabase, sites: Sequence[str], specific_force: ArrayLike,
-                    window: int = 10, excluded_clips: Sequence[int] = ()) -> NDArray[np.int64]:
+def nearest_windows(
+    database: MotionDatabase,
+    sites: Sequence[str],
+    specific_force: ArrayLike,
+    window: int = 10,
+    excluded_clips: Sequence[int] = (),
+) -> NDArray[np.int64]:
     """Baseline: for each reading the frame whose last `window` readings are nearest."""
 
-def nearest_poses(database: MotionDatabase, positions: ArrayLike,
-                  excluded_clips: Sequence[int] = ()) -> NDArray[np.int64]:
+def nearest_poses(
+    database: MotionDatabase, positions: ArrayLike, excluded_clips: Sequence[int] = ()
+) -> NDArray[np.int64]:
     """Oracle: for each pose (T, 21, 3; heading frame) the database frame that is nearest."""

@@ -86,8 +86,13 @@ class BoundReconstructor {
   }
 
   std::vector<BoundEstimate> flush() {
+    std::vector<PoseEstimate> owed;
+    {
+      const py::gil_scoped_release release;
+      owed = method_->flush();
+    }
     std::vector<BoundEstimate> bound;
-    for (auto& estimate : method_->flush()) bound.push_back({std::move(estimate), database_});
+    for (auto& estimate : owed) bound.push_back({std::move(estimate), database_});
     return bound;
   }
 
@@ -110,7 +115,14 @@ std::vector<std::string> as_strings(const std::vector<std::string_view>& names) 
   return {names.begin(), names.end()};
 }
 
-py::array_t<std::int64_t> as_array(const std::vector<int>& values) {
+// Runs work, which must not touch Python, and gives its result to NumPy.
+template <typename Work>
+py::array_t<std::int64_t> without_gil(const Work& work) {
+  std::vector<int> values;
+  {
+    const py::gil_scoped_release release;
+    values = work();
+  }
   py::array_t<std::int64_t> out(static_cast<py::ssize_t>(values.size()));
   std::copy(values.begin(), values.end(), out.mutable_data());
   return out;
@@ -195,8 +207,9 @@ void bind_baselines(py::module_& m) {
         [](const Database& database, const std::vector<std::string>& sites,
            const Doubles& specific_force, const std::vector<int>& excluded_clips) {
           const auto take = readings_from(specific_force, sites.size());
-          return as_array(playback_best_path(*database, sensors_from(sites, std::nullopt), take,
-                                             excluded_clips));
+          const auto sensors = sensors_from(sites, std::nullopt);
+          return without_gil(
+              [&] { return playback_best_path(*database, sensors, take, excluded_clips); });
         },
         py::arg("database"), py::arg("sites"), py::arg("specific_force"),
         py::arg("excluded_clips") = std::vector<int>{});
@@ -204,8 +217,9 @@ void bind_baselines(py::module_& m) {
         [](const Database& database, const std::vector<std::string>& sites,
            const Doubles& specific_force, int window, const std::vector<int>& excluded_clips) {
           const auto take = readings_from(specific_force, sites.size());
-          return as_array(nearest_windows(*database, sensors_from(sites, std::nullopt), take,
-                                          window, excluded_clips));
+          const auto sensors = sensors_from(sites, std::nullopt);
+          return without_gil(
+              [&] { return nearest_windows(*database, sensors, take, window, excluded_clips); });
         },
         py::arg("database"), py::arg("sites"), py::arg("specific_force"), py::arg("window") = 10,
         py::arg("excluded_clips") = std::vector<int>{});
@@ -215,7 +229,7 @@ void bind_baselines(py::module_& m) {
           require_shape(positions, {-1, kNumStandardJoints, 3}, "positions");
           const Eigen::MatrixXd columns = Eigen::Map<const Eigen::MatrixXd>(
               positions.data(), 3 * kNumStandardJoints, positions.shape(0));
-          return as_array(nearest_poses(*database, columns, excluded_clips));
+          return without_gil([&] { return nearest_poses(*database, columns, excluded_clips); });
         },
         py::arg("database"), py::arg("positions"),
         py::arg("excluded_clips") = std::vector<int>{});

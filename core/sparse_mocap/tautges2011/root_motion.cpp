@@ -17,6 +17,7 @@ RootRates root_rates(const MotionDatabase& database, const Neighbourhood& neighb
     motion += weight * database.root_motion().row(frame).transpose().cast<double>();
     rates.contacts += weight * database.contacts().row(frame).transpose().cast<double>();
   }
+  rates.contacts = rates.contacts.cwiseMin(1.0);  // weights sum to 1 but for rounding
   rates.velocity_mps = {motion[root_motion_column::velocity_left],
                         motion[root_motion_column::velocity_forward]};
   rates.yaw_rate_radps = motion[root_motion_column::yaw_rate];
