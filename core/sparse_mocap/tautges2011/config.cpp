@@ -21,6 +21,10 @@ Config paper() {
   // The paper does not state M; it found any from 8 on alike (figure 9b).
   config.olng.forgetting = 1.0;
   config.olng.window = 20;
+  // K = 4096 and I = 256 are meant for its 560,000 frames. As many on a small database mix
+  // unrelated motions.
+  config.neighbour_fraction = 0.05;
+  config.path_fraction = 256.0 / 560'000.0;
   return config;
 }
 
@@ -98,6 +102,7 @@ void Config::validate() const {
   require(neighbour_fraction, 1e-6, 1.0, "neighbour_fraction");
   require(num_paths, 1, num_neighbours, "num_paths (I)");
   require(leg_weight, 1e-3, 1e3, "leg_weight");
+  require(path_fraction, 1e-9, 1.0, "path_fraction");
   require(olng.penalty, 0.0, 100.0, "olng.penalty");
   require(olng.forgetting, 0.0, 1.0, "olng.forgetting");
   require(olng.window, 0, 10000, "olng.window (M)");

@@ -27,6 +27,8 @@ enum class MotionRule {
 
 // Everything that a reconstruction can be told. Angles in rad, positions in m.
 struct Config {
+  static constexpr int kFewestPaths = 32;
+
   // Retrieval, sections 3 and 4.
   int num_neighbours = 4096;            // K, at most neighbour_fraction of the database
   double neighbour_fraction = 0.25;
@@ -36,7 +38,8 @@ struct Config {
   OlngConfig olng;
 
   // Weights, equation (1).
-  int num_paths = 256;                  // I, at most a quarter of K
+  int num_paths = 256;                  // I, at most a quarter of K and, from kFewestPaths on,
+  double path_fraction = 1.0;           // this share of the database
   WeightRule weight_rule = WeightRule::linear;
   double sharpness = 1.0;               // softmax only
 

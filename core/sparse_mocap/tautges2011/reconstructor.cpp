@@ -88,7 +88,10 @@ Reconstructor::Reconstructor(std::shared_ptr<const MotionDatabase> database,
   }
   const int searchable = static_cast<int>(config_.neighbour_fraction * index_.num_rows());
   config_.num_neighbours = std::clamp(config_.num_neighbours, 1, std::max(searchable, 1));
-  config_.num_paths = std::clamp(config_.num_paths, 1, std::max(config_.num_neighbours / 4, 1));
+  const int most_paths = std::max(Config::kFewestPaths,
+                                  static_cast<int>(config_.path_fraction * index_.num_rows()));
+  config_.num_paths = std::clamp(config_.num_paths, 1,
+                                 std::max(std::min(config_.num_neighbours / 4, most_paths), 1));
   recent_.resize(reach_back_ + look_ahead_ + 2, static_cast<Eigen::Index>(3 * sensors_.size()));
 }
 
