@@ -102,6 +102,29 @@ TEST(Minimize, NeverLetsTheEnergyRise) {
   }
 }
 
+// Far from the targets positions are anything but linear in the angles, and full steps overshoot.
+TEST(Minimize, ShortensStepsThatOvershoot) {
+  const Skeleton skeleton = template_skeleton();
+  Random random(6);
+  int at_the_bottom = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const Eigen::VectorXd wanted = random.column(43, 1.0);
+    JointTransforms pose;
+    forward_kinematics(skeleton, Vec3::Zero(), wanted, pose);
+    Eigen::MatrixXd target(63, 1);
+    for (Eigen::Index j = 0; j < kNumStandardJoints; ++j)
+      target.col(0).segment<3>(3 * j) = pose.end[static_cast<std::size_t>(j)];
+    const Energy energy(skeleton, Eigen::VectorXd::Ones(1), {{{}, 1.0, 2.0, target}});
+    const PoseSubspace everything{Eigen::VectorXd::Zero(43), Eigen::MatrixXd::Identity(43, 43)};
+    const Eigen::VectorXd start = wanted + random.column(43, 1.5);
+    const Minimum minimum = minimize(energy, everything, {start}, 500);
+    Eigen::VectorXd slope;
+    energy.value_and_gradient(minimum.angles, slope);
+    at_the_bottom += slope.norm() < 1e-2 ? 1 : 0;
+  }
+  EXPECT_GE(at_the_bottom, 34);
+}
+
 TEST(Minimize, DescendsFromTheBestStart) {
   const auto database = swaying_database();
   Random random(4);
