@@ -149,7 +149,8 @@ Eigen::VectorXd Reconstructor::minimize_energy(const Neighbourhood& neighbours) 
   std::vector<KernelTerm> terms{pose_prior(neighbours, config_)};  // equation (5)
   if (past_) {
     const auto& [angles, x, x_before, accelerations] = *past_;
-    terms.push_back(motion_prior(neighbours, config_, x, dt));                // equation (7)
+    if (config_.w_motion > 0.0)
+      terms.push_back(motion_prior(neighbours, config_, x, dt));  // equation (7)
     if (config_.w_smooth > 0.0)
       terms.push_back(smoothness_prior(neighbours, config_, x, x_before, dt));  // equation (8)
     if (config_.w_contr > 0.0)
