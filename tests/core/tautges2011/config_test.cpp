@@ -36,6 +36,7 @@ const double kNan = std::nan("");
 
 TEST(Config, RefusesNumbersOutsideTheirRangeNamingThem) {
   expect_refused("neighbour_fraction", &Config::neighbour_fraction, {0.0, -1.0, 1.1, kNan});
+  expect_refused("path_fraction", &Config::path_fraction, {0.0, -1.0, 1.1, kNan});
   expect_refused("leg_weight", &Config::leg_weight, {0.0, -1.0, 1e9, kNan});
   expect_refused("sharpness", &Config::sharpness, {-0.1, 1e9, kNan});
   expect_refused("offline_smoothing_s", &Config::offline_smoothing_s, {-0.1, 2.0, kNan});
