@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
+
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "sparse_mocap/base/progress.hpp"
 #include "sparse_mocap/motion/motion.hpp"

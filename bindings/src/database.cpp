@@ -33,8 +33,7 @@ py::array view_of(const Database& database, const std::string& name) {
 // A clip's rows turned back into a motion: poses from the angles, the root by integration.
 Motion clip_motion(const MotionDatabase& database, int index) {
   if (index < 0 || index >= static_cast<int>(database.clips().size()))
-    throw py::index_error("the database has " + std::to_string(database.clips().size()) +
-                          " clips");
+    throw py::index_error("the database has " + std::to_string(database.clips().size()) + " clips");
   const Clip& clip = database.clips()[static_cast<std::size_t>(index)];
   std::vector<PoseEstimate> estimates;
   Vec3 position = Vec3::Zero();
@@ -59,9 +58,8 @@ Motion clip_motion(const MotionDatabase& database, int index) {
 
 BuildReport build(const std::vector<std::filesystem::path>& sources,
                   const std::filesystem::path& output, double rate_hz, bool mirror, bool reverse,
-                  const std::vector<double>& tempo_copies,
-                  const std::vector<std::string>& exclude, bool strict,
-                  const std::optional<py::function>& callback) {
+                  const std::vector<double>& tempo_copies, const std::vector<std::string>& exclude,
+                  bool strict, const std::optional<py::function>& callback) {
   BuildOptions options;
   options.rate_hz = rate_hz;
   options.add_mirrored = mirror;
@@ -102,11 +100,12 @@ void bind_database(py::module_& m) {
       .def_property_readonly("clips", [](const MotionDatabase& d) { return d.clips(); })
       .def_property_readonly("site_names", &MotionDatabase::site_names)
       .def_property_readonly("build_info", &MotionDatabase::build_info)
-      .def("array",
-           [](const std::shared_ptr<MotionDatabase>& d, const std::string& name) {
-             return view_of(d, name);
-           },
-           py::arg("name"))
+      .def(
+          "array",
+          [](const std::shared_ptr<MotionDatabase>& d, const std::string& name) {
+            return view_of(d, name);
+          },
+          py::arg("name"))
       .def("clip_motion", &clip_motion, py::arg("index"));
 
   py::class_<BuildReport>(m, "BuildReport")

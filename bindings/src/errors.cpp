@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/base/errors.hpp"
+
 #include <pybind11/gil_safe_call_once.h>
 
 #include "common.hpp"
-#include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/motion/humanoid.hpp"
 
 namespace sparse_mocap::python {
@@ -12,8 +13,8 @@ py::object& format_error_class() {
   static py::gil_safe_call_once_and_store<py::object> storage;
   return storage
       .call_once_and_store_result([] {
-        return py::reinterpret_steal<py::object>(PyErr_NewException(
-            "sparse_mocap._core.FormatError", PyExc_ValueError, nullptr));
+        return py::reinterpret_steal<py::object>(
+            PyErr_NewException("sparse_mocap._core.FormatError", PyExc_ValueError, nullptr));
       })
       .get_stored();
 }

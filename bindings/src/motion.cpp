@@ -53,8 +53,7 @@ Motion make_motion(const Skeleton& skeleton, double frame_time_s, const Doubles&
   for (py::ssize_t t = 0; t < frames; ++t) {
     motion.root_positions.emplace_back(p(t, 0), p(t, 1), p(t, 2));
     for (py::ssize_t j = 0; j < q.shape(1); ++j)
-      motion.rotations.push_back(
-          Quat(q(t, j, 0), q(t, j, 1), q(t, j, 2), q(t, j, 3)).normalized());
+      motion.rotations.push_back(Quat(q(t, j, 0), q(t, j, 1), q(t, j, 2), q(t, j, 3)).normalized());
   }
   return motion;
 }
@@ -115,8 +114,7 @@ void bind_motion(py::module_& m) {
       .def_property_readonly("parents",
                              [](const Skeleton& s) {
                                std::vector<int> parents;
-                               for (const auto& joint : s.joints())
-                                 parents.push_back(joint.parent);
+                               for (const auto& joint : s.joints()) parents.push_back(joint.parent);
                                return parents;
                              })
       .def_property_readonly("offsets",
@@ -139,8 +137,8 @@ void bind_motion(py::module_& m) {
         return mirrored(motion, left_right_pairs(motion.skeleton));
       });
 
-  m.def("read_motion", &read_motion, py::arg("path"), py::kw_only(),
-        py::arg("amc_rate_hz") = 120.0, release());
+  m.def("read_motion", &read_motion, py::arg("path"), py::kw_only(), py::arg("amc_rate_hz") = 120.0,
+        release());
   m.def("write_bvh", &write_bvh, py::arg("path"), py::arg("motion"), release());
   m.def("standard_motion", &standard_motion, py::arg("motion"), py::arg("skeleton") = py::none(),
         release());

@@ -9,8 +9,7 @@ namespace {
 
 using Database = std::shared_ptr<MotionDatabase>;
 
-py::array_t<double> to_array(const Eigen::VectorXd& values,
-                             const std::vector<py::ssize_t>& shape) {
+py::array_t<double> to_array(const Eigen::VectorXd& values, const std::vector<py::ssize_t>& shape) {
   auto out = new_array(shape);
   std::copy(values.data(), values.data() + values.size(), out.mutable_data());
   return out;
@@ -74,8 +73,8 @@ class BoundReconstructor {
   std::optional<BoundEstimate> step(const Doubles& specific_force) {
     require_shape(specific_force, {static_cast<py::ssize_t>(num_sensors_), 3}, "specific_force");
     // Row-major S x 3 is column-major 3 x S.
-    const Reading reading = Eigen::Map<const Reading>(
-        specific_force.data(), 3, static_cast<Eigen::Index>(num_sensors_));
+    const Reading reading = Eigen::Map<const Reading>(specific_force.data(), 3,
+                                                      static_cast<Eigen::Index>(num_sensors_));
     std::optional<PoseEstimate> estimate;
     {
       const py::gil_scoped_release release;
@@ -130,16 +129,15 @@ py::array_t<std::int64_t> without_gil(const Work& work) {
 
 void bind_estimates(py::module_& m) {
   py::class_<BoundEstimate>(m, "PoseEstimate")
-      .def_property_readonly(
-          "angles",
-          [](const BoundEstimate& b) {
-            return to_array(b.estimate.angles, {b.estimate.angles.size()});
-          })
-      .def_property_readonly("positions",
+      .def_property_readonly("angles",
                              [](const BoundEstimate& b) {
-                               return to_array(b.estimate.positions,
-                                               {b.estimate.positions.size() / 3, 3});
+                               return to_array(b.estimate.angles, {b.estimate.angles.size()});
                              })
+      .def_property_readonly(
+          "positions",
+          [](const BoundEstimate& b) {
+            return to_array(b.estimate.positions, {b.estimate.positions.size() / 3, 3});
+          })
       .def_property_readonly("rotations", &BoundEstimate::rotations)
       .def_property_readonly(
           "root_position",
@@ -172,18 +170,17 @@ void bind_estimates(py::module_& m) {
                              })
       .def_property_readonly("positions",
                              [](const Reconstruction& r) {
-                               return r.stacked(&PoseEstimate::positions,
-                                                {kNumStandardJoints, 3});
+                               return r.stacked(&PoseEstimate::positions, {kNumStandardJoints, 3});
                              })
-      .def_property_readonly("contacts",
-                             [](const Reconstruction& r) {
-                               auto out =
-                                   new_array({static_cast<py::ssize_t>(r.estimates.size()), 2});
-                               double* value = out.mutable_data();
-                               for (const auto& e : r.estimates)
-                                 value = std::copy(e.contacts.data(), e.contacts.data() + 2, value);
-                               return out;
-                             })
+      .def_property_readonly(
+          "contacts",
+          [](const Reconstruction& r) {
+            auto out = new_array({static_cast<py::ssize_t>(r.estimates.size()), 2});
+            double* value = out.mutable_data();
+            for (const auto& e : r.estimates)
+              value = std::copy(e.contacts.data(), e.contacts.data() + 2, value);
+            return out;
+          })
       .def_property_readonly("spread_m",
                              [](const Reconstruction& r) {
                                return r.stacked(&PoseEstimate::spread_m, {kNumStandardJoints});
@@ -203,36 +200,38 @@ void bind_estimates(py::module_& m) {
 }
 
 void bind_baselines(py::module_& m) {
-  m.def("playback_best_path",
-        [](const Database& database, const std::vector<std::string>& sites,
-           const Doubles& specific_force, const std::vector<int>& excluded_clips) {
-          const auto take = readings_from(specific_force, sites.size());
-          const auto sensors = sensors_from(sites, std::nullopt);
-          return without_gil(
-              [&] { return playback_best_path(*database, sensors, take, excluded_clips); });
-        },
-        py::arg("database"), py::arg("sites"), py::arg("specific_force"),
-        py::arg("excluded_clips") = std::vector<int>{});
-  m.def("nearest_windows",
-        [](const Database& database, const std::vector<std::string>& sites,
-           const Doubles& specific_force, int window, const std::vector<int>& excluded_clips) {
-          const auto take = readings_from(specific_force, sites.size());
-          const auto sensors = sensors_from(sites, std::nullopt);
-          return without_gil(
-              [&] { return nearest_windows(*database, sensors, take, window, excluded_clips); });
-        },
-        py::arg("database"), py::arg("sites"), py::arg("specific_force"), py::arg("window") = 10,
-        py::arg("excluded_clips") = std::vector<int>{});
-  m.def("nearest_poses",
-        [](const Database& database, const Doubles& positions,
-           const std::vector<int>& excluded_clips) {
-          require_shape(positions, {-1, kNumStandardJoints, 3}, "positions");
-          const Eigen::MatrixXd columns = Eigen::Map<const Eigen::MatrixXd>(
-              positions.data(), 3 * kNumStandardJoints, positions.shape(0));
-          return without_gil([&] { return nearest_poses(*database, columns, excluded_clips); });
-        },
-        py::arg("database"), py::arg("positions"),
-        py::arg("excluded_clips") = std::vector<int>{});
+  m.def(
+      "playback_best_path",
+      [](const Database& database, const std::vector<std::string>& sites,
+         const Doubles& specific_force, const std::vector<int>& excluded_clips) {
+        const auto take = readings_from(specific_force, sites.size());
+        const auto sensors = sensors_from(sites, std::nullopt);
+        return without_gil(
+            [&] { return playback_best_path(*database, sensors, take, excluded_clips); });
+      },
+      py::arg("database"), py::arg("sites"), py::arg("specific_force"),
+      py::arg("excluded_clips") = std::vector<int>{});
+  m.def(
+      "nearest_windows",
+      [](const Database& database, const std::vector<std::string>& sites,
+         const Doubles& specific_force, int window, const std::vector<int>& excluded_clips) {
+        const auto take = readings_from(specific_force, sites.size());
+        const auto sensors = sensors_from(sites, std::nullopt);
+        return without_gil(
+            [&] { return nearest_windows(*database, sensors, take, window, excluded_clips); });
+      },
+      py::arg("database"), py::arg("sites"), py::arg("specific_force"), py::arg("window") = 10,
+      py::arg("excluded_clips") = std::vector<int>{});
+  m.def(
+      "nearest_poses",
+      [](const Database& database, const Doubles& positions,
+         const std::vector<int>& excluded_clips) {
+        require_shape(positions, {-1, kNumStandardJoints, 3}, "positions");
+        const Eigen::MatrixXd columns = Eigen::Map<const Eigen::MatrixXd>(
+            positions.data(), 3 * kNumStandardJoints, positions.shape(0));
+        return without_gil([&] { return nearest_poses(*database, columns, excluded_clips); });
+      },
+      py::arg("database"), py::arg("positions"), py::arg("excluded_clips") = std::vector<int>{});
 }
 
 }  // namespace
@@ -241,16 +240,16 @@ void bind_reconstruction(py::module_& m) {
   bind_estimates(m);
   bind_baselines(m);
   m.def("method_names", [] { return as_strings(method_names()); });
-  m.def("preset_names",
-        [](const std::string& method) { return as_strings(method_presets(method)); },
-        py::arg("method"));
+  m.def(
+      "preset_names", [](const std::string& method) { return as_strings(method_presets(method)); },
+      py::arg("method"));
   py::class_<BoundReconstructor>(m, "Reconstructor")
       .def(py::init<Database, const std::vector<std::string>&, const std::string&,
                     const std::string&, const std::optional<std::vector<double>>&,
                     const std::vector<int>&>(),
-           py::arg("database"), py::arg("sites"), py::kw_only(),
-           py::arg("method") = "tautges2011", py::arg("preset") = "default",
-           py::arg("places") = py::none(), py::arg("excluded_clips") = std::vector<int>{})
+           py::arg("database"), py::arg("sites"), py::kw_only(), py::arg("method") = "tautges2011",
+           py::arg("preset") = "default", py::arg("places") = py::none(),
+           py::arg("excluded_clips") = std::vector<int>{})
       .def_property_readonly("latency_frames", &BoundReconstructor::latency_frames)
       .def("step", &BoundReconstructor::step, py::arg("specific_force"))
       .def("flush", &BoundReconstructor::flush)

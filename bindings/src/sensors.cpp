@@ -52,16 +52,15 @@ py::dict simulate(const Motion& motion, const std::vector<std::string>& site_nam
   const auto s = static_cast<py::ssize_t>(sites.size());
   py::array_t<double> time_s(n);
   std::copy(times.begin(), times.end(), time_s.mutable_data());
-  auto force = new_array({s, n, 3}), turn = new_array({s, n, 3}), orientation = new_array({s, n, 4});
+  auto force = new_array({s, n, 3}), turn = new_array({s, n, 3}),
+       orientation = new_array({s, n, 4});
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const auto at = static_cast<py::ssize_t>(i);
-    const Eigen::MatrixXd f =
-        sampled(readings[i].specific_force(sensors[i].place), motion, times);
+    const Eigen::MatrixXd f = sampled(readings[i].specific_force(sensors[i].place), motion, times);
     const Eigen::MatrixXd w = sampled(readings[i].angular_velocity, motion, times);
     std::copy(f.data(), f.data() + f.size(), force.mutable_data(at, 0, 0));
     std::copy(w.data(), w.data() + w.size(), turn.mutable_data(at, 0, 0));
-    copy_orientation(readings[i].R_world_sensor, motion, times,
-                     orientation.mutable_data(at, 0, 0));
+    copy_orientation(readings[i].R_world_sensor, motion, times, orientation.mutable_data(at, 0, 0));
   }
   py::dict out;
   out["time_s"] = time_s;

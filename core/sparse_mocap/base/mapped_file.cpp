@@ -73,8 +73,7 @@ std::shared_ptr<const Bytes> map_file(const std::filesystem::path& path) {
   return own_bytes(std::vector<std::byte>(bytes.begin(), bytes.end()));
 #else
   if (!std::filesystem::exists(path)) throw FormatError({path}, "no such file", "check the path");
-  if (!std::filesystem::is_regular_file(path))
-    throw FormatError({path}, "is not a regular file");
+  if (!std::filesystem::is_regular_file(path)) throw FormatError({path}, "is not a regular file");
   const Descriptor file(path);
   struct stat status {};
   if (file.value < 0 || fstat(file.value, &status) != 0)

@@ -5,10 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <span>
-
-#include <nlohmann/json.hpp>
 
 #include "sparse_mocap/base/files.hpp"
 #include "sparse_mocap/database/clip_names.hpp"
@@ -224,8 +223,8 @@ void fill_readings(const Motion& motion, const std::vector<double>& wanted_s, Da
   for (int t = 0; t < motion.num_frames(); ++t) times_s.push_back(t * motion.frame_time_s);
   const auto n = static_cast<Eigen::Index>(wanted_s.size());
   const auto columns = static_cast<Eigen::Index>(3 * all_sites().size());
-  for (auto* target : {&rows.specific_force_pivot, &rows.specific_force_end,
-                       &rows.angular_velocity, &rows.up})
+  for (auto* target :
+       {&rows.specific_force_pivot, &rows.specific_force_end, &rows.angular_velocity, &rows.up})
     target->resize(n, columns);
   const auto readings = virtual_readings(motion, all_sites());
   for (std::size_t s = 0; s < readings.size(); ++s) {
@@ -278,7 +277,8 @@ std::vector<fs::path> find_motion_files(const std::vector<fs::path>& sources,
                                         const std::vector<std::string>& exclude) {
   std::vector<fs::path> files;
   for (const auto& source : sources) {
-    if (!fs::exists(source)) throw FormatError({source}, "no such file or folder", "check the path");
+    if (!fs::exists(source))
+      throw FormatError({source}, "no such file or folder", "check the path");
     if (!fs::is_directory(source)) {
       if (!is_motion_file(source))
         throw FormatError({source}, "is neither .bvh nor .amc", "name motion files or folders");

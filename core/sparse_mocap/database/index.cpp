@@ -5,11 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <nanoflann.hpp>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
-
-#include <nanoflann.hpp>
 
 namespace sparse_mocap {
 namespace {

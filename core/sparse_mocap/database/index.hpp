@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <span>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace sparse_mocap {
 
@@ -28,7 +27,7 @@ class KnnIndex {
   KnnIndex(KnnIndex&&) noexcept;
   KnnIndex& operator=(KnnIndex&&) noexcept;
 
-  int num_rows() const;      // that are searched
+  int num_rows() const;  // that are searched
   int num_dimensions() const;
   const FeatureRows& features() const;
 

@@ -2,7 +2,6 @@
 #include "sparse_mocap/database/motion_database.hpp"
 
 #include <cmath>
-
 #include <nlohmann/json.hpp>
 
 #include "sparse_mocap/base/errors.hpp"
@@ -149,8 +148,8 @@ class DatabaseReader {
 
   void check_values() const {
     for (const FloatRows* rows :
-         {&database_.angles_, &database_.positions_, &database_.root_motion_,
-          &database_.contacts_, &database_.specific_force_pivot_, &database_.specific_force_end_,
+         {&database_.angles_, &database_.positions_, &database_.root_motion_, &database_.contacts_,
+          &database_.specific_force_pivot_, &database_.specific_force_end_,
           &database_.angular_velocity_, &database_.up_})
       if (!rows->allFinite()) refuse("a value is not a number");
   }

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "sparse_mocap/base/mapped_file.hpp"
 #include "sparse_mocap/motion/skeleton.hpp"
@@ -114,9 +113,9 @@ struct DatabaseRows {
 struct DatabaseContent {
   Skeleton skeleton;
   double rate_hz = 25.0;
-  std::vector<Clip> clips;             // begin and end are set on writing
+  std::vector<Clip> clips;              // begin and end are set on writing
   std::vector<DatabaseRows> clip_rows;  // one entry a clip
-  std::string build_info;              // JSON: options, sources, versions
+  std::string build_info;               // JSON: options, sources, versions
 };
 
 // The file as it will lie on disk.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cstring>
-#include <stdexcept>
-
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/database/safetensors.hpp"
@@ -58,8 +57,7 @@ Array gathered(const char* name, const DatabaseContent& content, Rows DatabaseRo
     const Rows& part = rows.*member;
     array.shape[0] += static_cast<std::size_t>(part.rows());
     array.shape[1] = static_cast<std::size_t>(part.cols());
-    const auto bytes =
-        std::as_bytes(std::span(part.data(), static_cast<std::size_t>(part.size())));
+    const auto bytes = std::as_bytes(std::span(part.data(), static_cast<std::size_t>(part.size())));
     array.bytes.insert(array.bytes.end(), bytes.begin(), bytes.end());
   }
   return array;
@@ -80,8 +78,7 @@ std::vector<Array> all_arrays(const DatabaseContent& content) {
   arrays.push_back(gathered("positions", content, &DatabaseRows::positions));
   arrays.push_back(gathered("root_motion", content, &DatabaseRows::root_motion));
   arrays.push_back(gathered("contacts", content, &DatabaseRows::contacts));
-  arrays.push_back(
-      gathered("specific_force_pivot", content, &DatabaseRows::specific_force_pivot));
+  arrays.push_back(gathered("specific_force_pivot", content, &DatabaseRows::specific_force_pivot));
   arrays.push_back(gathered("specific_force_end", content, &DatabaseRows::specific_force_end));
   arrays.push_back(gathered("angular_velocity", content, &DatabaseRows::angular_velocity));
   arrays.push_back(gathered("up", content, &DatabaseRows::up));

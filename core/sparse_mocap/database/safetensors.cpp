@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/database/safetensors.hpp"
 
+#include <xxhash.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <set>
-
 #include <nlohmann/json.hpp>
-#include <xxhash.h>
+#include <set>
 
 #include "sparse_mocap/base/errors.hpp"
 
@@ -126,8 +126,8 @@ std::size_t size_of(ElementType type) {
 
 const Tensor& SafetensorsView::find(const std::string& name,
                                     const std::filesystem::path& path) const {
-  const auto at = std::find_if(tensors.begin(), tensors.end(),
-                               [&](const Tensor& t) { return t.name == name; });
+  const auto at =
+      std::find_if(tensors.begin(), tensors.end(), [&](const Tensor& t) { return t.name == name; });
   if (at == tensors.end()) refuse(path, "the array '" + name + "' is missing");
   return *at;
 }

@@ -37,8 +37,8 @@ std::string safetensors_header(const std::map<std::string, std::string>& metadat
                                const std::vector<Tensor>& tensors);
 
 // Checks every rule of the format before anything is used: header size, duplicate keys, known
-// types, sizes without overflow, arrays contiguous and covering the file exactly. Throws FormatError
-// naming path.
+// types, sizes without overflow, arrays contiguous and covering the file exactly. Throws
+// FormatError naming path.
 SafetensorsView parse_safetensors(std::span<const std::byte> file,
                                   const std::filesystem::path& path);
 

@@ -103,7 +103,8 @@ std::vector<int> nearest_poses(const MotionDatabase& database, const Eigen::Matr
         (database.positions().rowwise() - pose.transpose()).rowwise().squaredNorm();
     int best = -1;
     for (int n = 0; n < database.num_frames(); ++n)
-      if (is_used[static_cast<std::size_t>(n)] && (best < 0 || squared[n] < squared[best])) best = n;
+      if (is_used[static_cast<std::size_t>(n)] && (best < 0 || squared[n] < squared[best]))
+        best = n;
     frames.push_back(best);
   }
   return frames;

@@ -32,8 +32,7 @@ Eigen::Matrix2Xd foot_contacts(const Motion& motion) {
       const int after = std::min(t + 1, n - 1);
       const double elapsed_s = std::max(after - before, 1) * motion.frame_time_s;
       const double speed = (path.col(after) - path.col(before)).norm() / elapsed_s;
-      const bool stands =
-          path(1, t) < lowest + kHighestStand_m && speed < kFastestStand_mps;
+      const bool stands = path(1, t) < lowest + kHighestStand_m && speed < kFastestStand_mps;
       contacts(side, t) = stands ? 1.0 : 0.0;
     }
   }

@@ -13,9 +13,7 @@ constexpr double kUprightAxis = 0.2;
 
 }  // namespace
 
-Mat3 yaw_rotation(double yaw_rad) {
-  return Eigen::AngleAxisd(yaw_rad, kUp).toRotationMatrix();
-}
+Mat3 yaw_rotation(double yaw_rad) { return Eigen::AngleAxisd(yaw_rad, kUp).toRotationMatrix(); }
 
 double heading_of(const JointTransforms& pose, double last_rad) {
   using namespace standard_joint;

@@ -11,11 +11,11 @@ namespace {
 
 using namespace standard_joint;
 
-constexpr std::array kRequired{root,   lfemur,   ltibia,  rfemur,  rtibia,
+constexpr std::array kRequired{root,     lfemur,  ltibia,   rfemur, rtibia,
                                lhumerus, lradius, rhumerus, rradius};
 // Limbs, whose rest direction differs between a T-pose and an A-pose.
-constexpr std::array kLimbs{lfemur,   ltibia,  rfemur, rtibia,   lhumerus,
-                            lradius,  lwrist,  rhumerus, rradius, rwrist};
+constexpr std::array kLimbs{lfemur,  ltibia, rfemur,   rtibia,  lhumerus,
+                            lradius, lwrist, rhumerus, rradius, rwrist};
 // Chains of the trunk, along which exporters have more or fewer joints.
 constexpr std::array kSpine{lowerback, upperback, thorax};
 constexpr std::array kNeck{lowerneck, upperneck, head};
@@ -59,8 +59,7 @@ std::array<int, kNumStandardJoints> find_joints(const Skeleton& source) {
 // The source in rest pose, at the origin.
 JointTransforms rest_pose(const Skeleton& source) {
   JointTransforms rest;
-  const std::vector<Mat3> unturned(static_cast<std::size_t>(source.num_joints()),
-                                   Mat3::Identity());
+  const std::vector<Mat3> unturned(static_cast<std::size_t>(source.num_joints()), Mat3::Identity());
   forward_kinematics(source, Vec3::Zero(), unturned, rest);
   return rest;
 }
@@ -81,8 +80,8 @@ class RestBones {
 
   StandardBones measure() {
     bones_.fill(Vec3::Zero());
-    for (const auto& [hip, femur, tibia] : {std::array{lhipjoint, lfemur, ltibia},
-                                            std::array{rhipjoint, rfemur, rtibia}}) {
+    for (const auto& [hip, femur, tibia] :
+         {std::array{lhipjoint, lfemur, ltibia}, std::array{rhipjoint, rfemur, rtibia}}) {
       bones_[hip] = pivot(femur) - pivot(root);
       bones_[femur] = pivot(tibia) - pivot(femur);
       bones_[tibia] = end(tibia) - pivot(tibia);
@@ -104,9 +103,7 @@ class RestBones {
   Vec3 pivot(Index j) const {
     return rest_.pivot[static_cast<std::size_t>(found_[static_cast<std::size_t>(j)])];
   }
-  Vec3 end(Index j) const {
-    return last_end(source_, rest_, found_[static_cast<std::size_t>(j)]);
-  }
+  Vec3 end(Index j) const { return last_end(source_, rest_, found_[static_cast<std::size_t>(j)]); }
   Vec3 neck_base() const {
     if (found_[lowerneck] >= 0) return pivot(lowerneck);
     if (found_[head] >= 0) return pivot(head);

@@ -20,9 +20,7 @@ Vec3 mirrored_vector(const Vec3& v) { return {-v.x(), v.y(), v.z()}; }
 // R seen in the mirror: M R M with M = diag(-1, 1, 1).
 Quat mirrored_rotation(const Quat& q) { return {q.w(), q.x(), -q.y(), -q.z()}; }
 
-Mat3 mirrored_axes(const Mat3& R) {
-  return mirrored_rotation(Quat(R)).toRotationMatrix();
-}
+Mat3 mirrored_axes(const Mat3& R) { return mirrored_rotation(Quat(R)).toRotationMatrix(); }
 
 // Every name this one may have on the other side.
 std::vector<std::string> mirrored_names(const std::string& name) {
@@ -118,7 +116,8 @@ Motion low_passed(const Motion& motion, double sigma_frames) {
   Motion out = motion;
   const auto weights = gaussian_weights(sigma_frames);
   out.root_positions = smoothed(motion.root_positions, weights);
-  for (auto& track : out.offset_tracks) track.offset_parent = smoothed(track.offset_parent, weights);
+  for (auto& track : out.offset_tracks)
+    track.offset_parent = smoothed(track.offset_parent, weights);
   smooth_rotations(out, weights);
   return out;
 }
@@ -159,7 +158,8 @@ JointTransforms Motion::transforms(int frame) const {
 
 Motion trimmed(const Motion& motion, int begin, int end) {
   if (begin < 0 || begin >= end || end > motion.num_frames())
-    throw std::invalid_argument("trimmed: frames must satisfy 0 <= begin < end <= number of frames");
+    throw std::invalid_argument(
+        "trimmed: frames must satisfy 0 <= begin < end <= number of frames");
   Motion out = motion;
   const auto cut = [&](std::vector<Vec3>& v) {
     v = std::vector<Vec3>(v.begin() + begin, v.begin() + end);
@@ -253,10 +253,10 @@ Motion resampled(const Motion& motion, double rate_hz) {
       out.offset_tracks[k].offset_parent.push_back(
           interpolated(source.offset_tracks[k].offset_parent, at));
     for (int j = 0; j < motion.skeleton.num_joints(); ++j)
-      out.rotations.push_back(at.fraction == 0.0
-                                  ? source.rotation(at.frame, j)
-                                  : source.rotation(at.frame, j)
-                                        .slerp(at.fraction, source.rotation(at.frame + 1, j)));
+      out.rotations.push_back(
+          at.fraction == 0.0
+              ? source.rotation(at.frame, j)
+              : source.rotation(at.frame, j).slerp(at.fraction, source.rotation(at.frame + 1, j)));
   }
   return out;
 }

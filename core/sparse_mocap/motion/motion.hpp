@@ -21,8 +21,8 @@ struct OffsetTrack {
 struct Motion {
   Skeleton skeleton;
   double frame_time_s = 1.0 / 120.0;
-  std::vector<Vec3> root_positions;      // pivot of the root, world, m; one a frame
-  std::vector<Quat> rotations;           // [frame * num_joints + joint]
+  std::vector<Vec3> root_positions;        // pivot of the root, world, m; one a frame
+  std::vector<Quat> rotations;             // [frame * num_joints + joint]
   std::vector<OffsetTrack> offset_tracks;  // empty for most files
 
   int num_frames() const { return static_cast<int>(root_positions.size()); }

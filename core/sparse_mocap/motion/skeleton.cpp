@@ -30,8 +30,8 @@ double closest_single_angle(const Mat3& R, Axis axis) {
   return std::atan2(R(k, j) - R(j, k), R(j, j) + R(k, k));
 }
 
-// R = R(outer, a) * R(inner, b), closest in the chordal sense, by alternation: each half step is the
-// exact optimum for one angle, so the distance never grows.
+// R = R(outer, a) * R(inner, b), closest in the chordal sense, by alternation: each half step is
+// the exact optimum for one angle, so the distance never grows.
 std::array<double, 2> closest_two_angles(const Mat3& R, Axis outer, Axis inner,
                                          std::array<double, 2> start) {
   auto [a, b] = start;
@@ -136,7 +136,8 @@ void joint_angles(const Joint& joint, const Mat3& R_joint, const double* referen
 
 void unwind_pose(const Skeleton& skeleton, const Eigen::VectorXd& reference,
                  Eigen::Ref<Eigen::VectorXd> angles) {
-  for (Eigen::Index i = 0; i < angles.size(); ++i) angles[i] = wrapped_near(angles[i], reference[i]);
+  for (Eigen::Index i = 0; i < angles.size(); ++i)
+    angles[i] = wrapped_near(angles[i], reference[i]);
   for (int j = 0; j < skeleton.num_joints(); ++j) {
     if (skeleton.joint(j).axes.size() != 3) continue;
     const Vec3 near = reference.segment<3>(skeleton.angle_begin(j));

@@ -70,8 +70,8 @@ Mat3 joint_rotation(const Joint& joint, const double* angles);
 // that give one rotation the one nearer to reference (null: zero; may be angles itself) is taken.
 void joint_angles(const Joint& joint, const Mat3& R_joint, const double* reference, double* angles);
 
-// Replaces a pose's angles by those that mean the same pose and lie nearest to reference: a full turn
-// more or less, and of each three-axis joint's two triples the nearer one.
+// Replaces a pose's angles by those that mean the same pose and lie nearest to reference: a full
+// turn more or less, and of each three-axis joint's two triples the nearer one.
 void unwind_pose(const Skeleton& skeleton, const Eigen::VectorXd& reference,
                  Eigen::Ref<Eigen::VectorXd> angles);
 

@@ -116,10 +116,10 @@ StandardBones averaged_bones(const std::vector<StandardBones>& bodies) {
 }
 
 const std::vector<int>& standard_left_right() {
-  static const std::vector<int> pairs{root,      rhipjoint, rfemur,    rtibia,   lhipjoint, lfemur,
-                                      ltibia,    lowerback, upperback, thorax,   lowerneck, upperneck,
-                                      head,      rclavicle, rhumerus,  rradius,  rwrist,    lclavicle,
-                                      lhumerus,  lradius,   lwrist};
+  static const std::vector<int> pairs{root,     rhipjoint, rfemur,    rtibia,  lhipjoint, lfemur,
+                                      ltibia,   lowerback, upperback, thorax,  lowerneck, upperneck,
+                                      head,     rclavicle, rhumerus,  rradius, rwrist,    lclavicle,
+                                      lhumerus, lradius,   lwrist};
   return pairs;
 }
 

@@ -16,8 +16,26 @@ inline constexpr int kNumStandardAngles = 43;
 
 namespace standard_joint {
 enum Index : int {
-  root, lhipjoint, lfemur, ltibia, rhipjoint, rfemur, rtibia, lowerback, upperback, thorax,
-  lowerneck, upperneck, head, lclavicle, lhumerus, lradius, lwrist, rclavicle, rhumerus, rradius,
+  root,
+  lhipjoint,
+  lfemur,
+  ltibia,
+  rhipjoint,
+  rfemur,
+  rtibia,
+  lowerback,
+  upperback,
+  thorax,
+  lowerneck,
+  upperneck,
+  head,
+  lclavicle,
+  lhumerus,
+  lradius,
+  lwrist,
+  rclavicle,
+  rhumerus,
+  rradius,
   rwrist
 };
 }  // namespace standard_joint

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "sparse_mocap/base/progress.hpp"
 #include "sparse_mocap/motion/motion.hpp"
@@ -24,10 +23,10 @@ struct WornSensor {
 
 // One reconstructed frame.
 struct PoseEstimate {
-  Eigen::VectorXd angles;              // 43, rad; the root's without heading
-  Eigen::VectorXd positions;           // 3 x 21, m, heading frame
-  Vec3 root_position = Vec3::Zero();   // m, world
-  double yaw_rad = 0.0;                // heading in the world
+  Eigen::VectorXd angles;                              // 43, rad; the root's without heading
+  Eigen::VectorXd positions;                           // 3 x 21, m, heading frame
+  Vec3 root_position = Vec3::Zero();                   // m, world
+  double yaw_rad = 0.0;                                // heading in the world
   Eigen::Vector2d contacts = Eigen::Vector2d::Zero();  // probability that left, right foot stand
   Eigen::VectorXd spread_m;            // 21: weighted deviation of the retrieved positions
   Eigen::VectorXd sensor_misfit_mps2;  // per sensor: measured against retrieved; NaN when silent

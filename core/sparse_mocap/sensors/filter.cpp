@@ -28,8 +28,7 @@ Eigen::MatrixXd filtered_at(std::span<const double> times_s, const Eigen::Matrix
   Eigen::MatrixXd out(values.rows(), static_cast<Eigen::Index>(wanted_s.size()));
   for (std::size_t k = 0; k < wanted_s.size(); ++k) {
     const double at_s = wanted_s[k];
-    const auto begin =
-        std::lower_bound(times_s.begin(), times_s.end(), at_s - filter.reach_s());
+    const auto begin = std::lower_bound(times_s.begin(), times_s.end(), at_s - filter.reach_s());
     const auto end = std::upper_bound(begin, times_s.end(), at_s + filter.reach_s());
     const auto column = static_cast<Eigen::Index>(k);
     if (end - begin < 2) {

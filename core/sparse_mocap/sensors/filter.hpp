@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <span>
-
 #include <Eigen/Core>
+#include <span>
 
 namespace sparse_mocap {
 
@@ -16,9 +15,9 @@ struct GaussianFilter {
   double reach_s() const { return 3.0 * sigma_s; }
 };
 
-// Two -3 dB points of the chain that every accelerometer signal passes: marker jitter must go before
-// positions are differentiated twice, and what the database's rate cannot carry must go before
-// readings are sampled.
+// Two -3 dB points of the chain that every accelerometer signal passes: marker jitter must go
+// before positions are differentiated twice, and what the database's rate cannot carry must go
+// before readings are sampled.
 inline constexpr GaussianFilter kMarkerFilter{0.0066};   // 20 Hz, on positions
 inline constexpr GaussianFilter kReadingFilter{0.0115};  // 11.5 Hz, on readings
 

@@ -83,9 +83,8 @@ Eigen::Matrix3Xd angular_velocity_along(const std::vector<Mat3>& R_world_sensor,
     const auto before = std::max<Eigen::Index>(t - 1, 0);
     const auto after = std::min<Eigen::Index>(t + 1, n - 1);
     if (before == after) continue;
-    const Eigen::AngleAxisd turn(
-        Mat3(R_world_sensor[static_cast<std::size_t>(before)].transpose() *
-             R_world_sensor[static_cast<std::size_t>(after)]));
+    const Eigen::AngleAxisd turn(Mat3(R_world_sensor[static_cast<std::size_t>(before)].transpose() *
+                                      R_world_sensor[static_cast<std::size_t>(after)]));
     out.col(t) =
         turn.axis() * (turn.angle() / (static_cast<double>(after - before) * frame_time_s));
   }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "sparse_mocap/motion/motion.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
@@ -37,8 +36,7 @@ std::vector<VirtualReadings> virtual_readings(const Motion& standard_motion,
 // Specific force (m/s^2, sensor axes) of a sensor carried along a path: the one formula that
 // virtual_readings applies. position is 3 x frames, m, world.
 Eigen::Matrix3Xd specific_force_along(const Eigen::Matrix3Xd& position,
-                                      const std::vector<Mat3>& R_world_sensor,
-                                      double frame_time_s);
+                                      const std::vector<Mat3>& R_world_sensor, double frame_time_s);
 
 // Angular velocity (rad/s, sensor axes) by central differences.
 Eigen::Matrix3Xd angular_velocity_along(const std::vector<Mat3>& R_world_sensor,

@@ -45,9 +45,8 @@ Config best_measured_alike() {
   config.use_tempo_copies = true;
   config.neighbour_fraction = 0.5;
   config.olng.penalty = 0.8;
-  config.num_paths = 512;
   config.weight_rule = WeightRule::softmax;
-  config.sharpness = 1.4;
+  config.sharpness = 1.3;
   config.regression_ridge = 6.0;
   config.kernel_power = 2.0;
   config.pose_space = PoseSpace::positions;
@@ -63,6 +62,8 @@ Config best_measured_alike() {
 // The readings around a frame, smoothed, and how they change across it; nothing hurries.
 Config best_measured_offline() {
   Config config = best_measured_alike();
+  config.num_paths = 512;
+  config.sharpness = 1.4;
   const auto now = gaussian_taps(0.0, 1.0, -5, 5);
   config.features.parts = {now, half_change(now, 3, 3)};
   config.olng.forgetting = 0.95;

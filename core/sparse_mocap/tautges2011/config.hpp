@@ -30,18 +30,18 @@ struct Config {
   static constexpr int kFewestPaths = 32;
 
   // Retrieval, sections 3 and 4.
-  int num_neighbours = 4096;            // K, at most neighbour_fraction of the database
+  int num_neighbours = 4096;  // K, at most neighbour_fraction of the database
   double neighbour_fraction = 0.25;
   FeatureLayout features;
-  double leg_weight = 1.0;              // of the sensors on legs in the search
-  bool use_tempo_copies = false;        // search clips at other tempos than performed as well
+  double leg_weight = 1.0;        // of the sensors on legs in the search
+  bool use_tempo_copies = false;  // search clips at other tempos than performed as well
   OlngConfig olng;
 
   // Weights, equation (1).
-  int num_paths = 256;                  // I, at most a quarter of K and, from kFewestPaths on,
-  double path_fraction = 1.0;           // this share of the database
+  int num_paths = 256;         // I, at most a quarter of K and, from kFewestPaths on,
+  double path_fraction = 1.0;  // this share of the database
   WeightRule weight_rule = WeightRule::linear;
-  double sharpness = 1.0;               // softmax only
+  double sharpness = 1.0;  // softmax only
 
   // Local regression from readings to poses over the paths; 0 turns it off. The ridge is in units
   // of the mean variance of its features.
@@ -54,20 +54,20 @@ struct Config {
   double w_motion = 0.2;
   double w_smooth = 0.2;
   double w_contr = 1.0;
-  double kernel_power = 0.5;            // the paper's square root; 2 gives weighted means
+  double kernel_power = 0.5;  // the paper's square root; 2 gives weighted means
   PoseSpace pose_space = PoseSpace::angles;
   MotionRule motion_rule = MotionRule::taylor;
 
   // Minimisation, section 5.3.
   double pca_variance = 0.99;
   int max_iterations = 50;
-  bool is_multi_start = false;          // start also from the weighted mean and the best path
+  bool is_multi_start = false;  // start also from the weighted mean and the best path
 
   // Root motion, section 6.4: weight of standing feet against the neighbours' mean.
   double foot_lock = 0.0;
 
   // Offline only.
-  double offline_smoothing_s = 0.0;     // standard deviation of the final low-pass
+  double offline_smoothing_s = 0.0;       // standard deviation of the final low-pass
   std::shared_ptr<const Config> offline;  // what to use instead of these settings; null: nothing
 
   // Throws ConfigError naming the setting and its range.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
+#include <vector>
 
 #include "sparse_mocap/motion/skeleton.hpp"
 #include "sparse_mocap/reconstruction/method.hpp"

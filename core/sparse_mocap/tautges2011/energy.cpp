@@ -49,8 +49,7 @@ Eigen::VectorXd observed(const TermSpace& space, const Eigen::VectorXd& angles,
   return y;
 }
 
-Eigen::MatrixXd observed_jacobian(const TermSpace& space,
-                                  const Eigen::MatrixXd& positions_by_basis,
+Eigen::MatrixXd observed_jacobian(const TermSpace& space, const Eigen::MatrixXd& positions_by_basis,
                                   const Eigen::MatrixXd& basis) {
   if (space.is_angles) return basis;
   Eigen::MatrixXd rows(3 * static_cast<Eigen::Index>(space.joints.size()), basis.cols());
@@ -86,8 +85,9 @@ double Energy::value(const Eigen::VectorXd& angles) const {
   forward_kinematics(skeleton_, Vec3::Zero(), angles, transforms);
   double total = 0.0;
   for (const auto& [term, weights, constant] : sums_)
-    total += constant + kernel_sum(term, weights,
-                                   softened_squares(term, observed(term.space, angles, transforms)));
+    total +=
+        constant +
+        kernel_sum(term, weights, softened_squares(term, observed(term.space, angles, transforms)));
   return total;
 }
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/tautges2011/minimizer.hpp"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-
-#include <Eigen/Cholesky>
 
 namespace sparse_mocap::tautges2011 {
 namespace {

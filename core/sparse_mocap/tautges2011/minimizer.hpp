@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
+#include <vector>
 
 #include "sparse_mocap/tautges2011/energy.hpp"
 #include "sparse_mocap/tautges2011/subspace.hpp"

@@ -39,8 +39,7 @@ Eigen::VectorXd path_weights(std::span<const Path> paths, WeightRule rule, doubl
 
 void kinematics_at(const MotionDatabase& database, int frame, Eigen::Ref<Eigen::VectorXd> velocity,
                    Eigen::Ref<Eigen::VectorXd> acceleration) {
-  const Clip& clip =
-      database.clips()[static_cast<std::size_t>(database.clip_index(frame))];
+  const Clip& clip = database.clips()[static_cast<std::size_t>(database.clip_index(frame))];
   const double dt = database.frame_time_s();
   if (clip.num_frames() < 3) {
     velocity.setZero();
@@ -48,9 +47,7 @@ void kinematics_at(const MotionDatabase& database, int frame, Eigen::Ref<Eigen::
     return;
   }
   const int centre = std::clamp(frame, clip.begin + 1, clip.end - 2);
-  const auto row = [&](int n) {
-    return database.positions().row(n).transpose().cast<double>();
-  };
+  const auto row = [&](int n) { return database.positions().row(n).transpose().cast<double>(); };
   velocity = (row(centre + 1) - row(centre - 1)) / (2.0 * dt);
   acceleration = (row(centre + 1) - 2.0 * row(centre) + row(centre - 1)) / (dt * dt);
 }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/tautges2011/config.hpp"
@@ -16,12 +15,12 @@ namespace sparse_mocap::tautges2011 {
 // entry a path, the best path first.
 struct Neighbourhood {
   std::vector<Path> paths;
-  Eigen::VectorXd weights;        // W, sum 1, equation (1)
-  Eigen::MatrixXd angles;         // Q, 43 x I, rad, each as near to the best path's as it can be put
-  Eigen::MatrixXd positions;      // X, 63 x I, m
-  Eigen::MatrixXd velocities;     // V, 63 x I, m/s
-  Eigen::MatrixXd accelerations;  // A, 63 x I, m/s^2
-  Eigen::MatrixXd steps;          // 63 x I, m: from the clip's frame before into this one
+  Eigen::VectorXd weights;     // W, sum 1, equation (1)
+  Eigen::MatrixXd angles;      // Q, 43 x I, rad, each as near to the best path's as it can be put
+  Eigen::MatrixXd positions;   // X, 63 x I, m
+  Eigen::MatrixXd velocities;  // V, 63 x I, m/s
+  Eigen::MatrixXd accelerations;      // A, 63 x I, m/s^2
+  Eigen::MatrixXd steps;              // 63 x I, m: from the clip's frame before into this one
   Eigen::MatrixXd velocities_before;  // 63 x I, m/s: at the frame that the path passed before
 };
 

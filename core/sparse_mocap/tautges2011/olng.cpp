@@ -86,8 +86,7 @@ void OnlineLazyNeighbourhoodGraph::cut_to_window(Node& node) const {
 
 void OnlineLazyNeighbourhoodGraph::extend(std::span<const Neighbour> neighbours) {
   const float charge =
-      neighbours.empty() ? 0.0F
-                         : static_cast<float>(config_.penalty) * neighbours.back().distance;
+      neighbours.empty() ? 0.0F : static_cast<float>(config_.penalty) * neighbours.back().distance;
   Column column;
   column.reserve(neighbours.size());
   for (const auto& neighbour : neighbours) {

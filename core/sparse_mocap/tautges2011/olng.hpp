@@ -31,8 +31,8 @@ struct OlngConfig {
 struct Path {
   int frame = 0;  // the database frame at its end
   double reward = 0.0;
-  int length = 0;             // matched columns
-  int previous_frame = -1;    // the frame before, -1 when the path begins here
+  int length = 0;           // matched columns
+  int previous_frame = -1;  // the frame before, -1 when the path begins here
 };
 
 // The online lazy neighbourhood graph (Tautges et al. 2011, section 4).
@@ -54,10 +54,10 @@ class OnlineLazyNeighbourhoodGraph {
  private:
   struct Node {
     std::int32_t frame = 0;
-    float reward = 0.0F;        // of the best path into it, forgetting applied
-    float total = 0.0F;         // the same without forgetting or window, to cut windows exactly
+    float reward = 0.0F;  // of the best path into it, forgetting applied
+    float total = 0.0F;   // the same without forgetting or window, to cut windows exactly
     std::int32_t length = 0;
-    std::int32_t previous = -1;     // node index in the column columns_back before
+    std::int32_t previous = -1;  // node index in the column columns_back before
     std::int32_t columns_back = 0;
   };
   using Column = std::vector<Node>;
@@ -68,7 +68,7 @@ class OnlineLazyNeighbourhoodGraph {
 
   std::vector<std::int32_t> clip_of_frame_;
   OlngConfig config_;
-  float kept_after_[3];  // forgetting after 0, 1 and 2 columns
+  float kept_after_[3];         // forgetting after 0, 1 and 2 columns
   std::deque<Column> columns_;  // newest last
   // For the two newest columns: which node a database frame has. An entry counts only if its stamp
   // is the column's, so nothing has to be cleared.

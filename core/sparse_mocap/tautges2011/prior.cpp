@@ -27,10 +27,7 @@ KernelTerm smoothness_prior(const Neighbourhood& neighbours, const Config& confi
                             const Eigen::VectorXd& positions_before, double dt_s) {
   const Eigen::VectorXd inertial = 2.0 * positions_now - positions_before;
   const Eigen::MatrixXd bend = neighbours.accelerations * dt_s * dt_s;
-  return {{},
-          config.w_prior * config.w_smooth,
-          config.kernel_power,
-          bend.colwise() + inertial};
+  return {{}, config.w_prior * config.w_smooth, config.kernel_power, bend.colwise() + inertial};
 }
 
 }  // namespace sparse_mocap::tautges2011

@@ -58,9 +58,8 @@ const Config& validated(const Config& config, const std::vector<WornSensor>& sen
   for (std::size_t a = 0; a < sensors.size(); ++a)
     for (std::size_t b = a + 1; b < sensors.size(); ++b)
       if (sensors[a].site == sensors[b].site)
-        throw ConfigError(
-            "two sensors at " +
-            std::string(all_sites()[static_cast<std::size_t>(sensors[a].site)].name));
+        throw ConfigError("two sensors at " +
+                          std::string(all_sites()[static_cast<std::size_t>(sensors[a].site)].name));
   return config;
 }
 
@@ -88,8 +87,8 @@ Reconstructor::Reconstructor(std::shared_ptr<const MotionDatabase> database,
   }
   const int searchable = static_cast<int>(config_.neighbour_fraction * index_.num_rows());
   config_.num_neighbours = std::clamp(config_.num_neighbours, 1, std::max(searchable, 1));
-  const int most_paths = std::max(Config::kFewestPaths,
-                                  static_cast<int>(config_.path_fraction * index_.num_rows()));
+  const int most_paths =
+      std::max(Config::kFewestPaths, static_cast<int>(config_.path_fraction * index_.num_rows()));
   config_.num_paths = std::clamp(config_.num_paths, 1,
                                  std::max(std::min(config_.num_neighbours / 4, most_paths), 1));
   recent_.resize(reach_back_ + look_ahead_ + 2, static_cast<Eigen::Index>(3 * sensors_.size()));
@@ -127,8 +126,8 @@ std::vector<PoseEstimate> Reconstructor::flush() {
 // Sections 4 and 5 for one frame.
 PoseEstimate Reconstructor::estimate_online(const Window& window) {
   --num_owed_;
-  search(window, neighbours_);   // S^(t+1), section 3
-  graph_.extend(neighbours_);    // section 4
+  search(window, neighbours_);  // S^(t+1), section 3
+  graph_.extend(neighbours_);   // section 4
   auto paths = best_paths(graph_.paths(), config_.num_paths);
   auto weights = path_weights(paths, config_.weight_rule, config_.sharpness);  // equation (1)
   return synthesize(std::move(paths), std::move(weights), window);
@@ -169,8 +168,8 @@ Eigen::VectorXd Reconstructor::minimize_energy(const Neighbourhood& neighbours) 
   return minimize(energy, subspace, starts, config_.max_iterations).angles;  // equation (2)
 }
 
-PoseEstimate Reconstructor::remember(const Neighbourhood& neighbours,
-                                     const Eigen::VectorXd& angles, const Window& window) {
+PoseEstimate Reconstructor::remember(const Neighbourhood& neighbours, const Eigen::VectorXd& angles,
+                                     const Window& window) {
   JointTransforms pose;
   forward_kinematics(database_->skeleton(), Vec3::Zero(), angles, pose);
   PoseEstimate estimate;
@@ -266,9 +265,8 @@ std::vector<PoseEstimate> Reconstructor::solve_both_ways(const std::vector<Readi
     progress.report(frames + t, 2 * frames, "reconstructing");
     auto paths = best_paths(retrieval.paths(t), config_.num_paths);
     auto weights = path_weights(paths, config_.weight_rule, config_.sharpness);
-    estimates.push_back(
-        synthesize(std::move(paths), std::move(weights),
-                   {readings, 0, readings.rows(), static_cast<Eigen::Index>(t)}));
+    estimates.push_back(synthesize(std::move(paths), std::move(weights),
+                                   {readings, 0, readings.rows(), static_cast<Eigen::Index>(t)}));
   }
   reset();
   return smoothed_take(estimates, *database_, config_);

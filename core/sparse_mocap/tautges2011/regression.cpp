@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/tautges2011/regression.hpp"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <vector>
-
-#include <Eigen/Cholesky>
 
 namespace sparse_mocap::tautges2011 {
 

@@ -15,8 +15,8 @@ namespace sparse_mocap::tautges2011 {
 Eigen::VectorXd regression_weights(const Eigen::MatrixXf& features, const Eigen::VectorXf& query,
                                    const Eigen::VectorXd& weights, double ridge);
 
-// Moves all neighbours' poses alike, so that their weighted mean becomes the one that the regression
-// predicts; how they differ from each other stays.
+// Moves all neighbours' poses alike, so that their weighted mean becomes the one that the
+// regression predicts; how they differ from each other stays.
 void shift_to_regression(Neighbourhood& neighbours, const Eigen::VectorXd& regression_weights);
 
 }  // namespace sparse_mocap::tautges2011

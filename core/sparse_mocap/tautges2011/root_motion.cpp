@@ -34,11 +34,12 @@ Eigen::Vector2d RootTracker::standing_velocity(const RootRates& rates,
   double total = 0.0;
   certainty = 0.0;
   const Mat3 R_before_now = yaw_rotation(rates.yaw_rate_radps * dt_s_);
-  for (const auto& [side, ankle] : {std::pair<Eigen::Index, Eigen::Index>{0, standard_joint::ltibia},
-                                    std::pair<Eigen::Index, Eigen::Index>{1, standard_joint::rtibia}}) {
+  for (const auto& [side, ankle] :
+       {std::pair<Eigen::Index, Eigen::Index>{0, standard_joint::ltibia},
+        std::pair<Eigen::Index, Eigen::Index>{1, standard_joint::rtibia}}) {
     const double stands = rates.contacts[side];
-    const Vec3 moved = R_before_now * positions.segment<3>(3 * ankle) -
-                       positions_before_.segment<3>(3 * ankle);
+    const Vec3 moved =
+        R_before_now * positions.segment<3>(3 * ankle) - positions_before_.segment<3>(3 * ankle);
     sum -= stands * stands * Eigen::Vector2d(moved.x(), moved.z()) / dt_s_;
     total += stands * stands;
     certainty = std::max(certainty, stands);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
+#include <vector>
 
 #include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/motion/skeleton.hpp"
@@ -15,8 +14,8 @@ namespace sparse_mocap::tautges2011 {
 struct RootRates {
   Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();  // left, forward; heading frame
   double yaw_rate_radps = 0.0;
-  double height_m = 0.0;                                   // above the floor
-  Eigen::Vector2d contacts = Eigen::Vector2d::Zero();      // share of neighbours that stand
+  double height_m = 0.0;                               // above the floor
+  Eigen::Vector2d contacts = Eigen::Vector2d::Zero();  // share of neighbours that stand
 };
 
 RootRates root_rates(const MotionDatabase& database, const Neighbourhood& neighbours);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/tautges2011/subspace.hpp"
 
-#include <algorithm>
-
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 namespace sparse_mocap::tautges2011 {
 
