@@ -33,6 +33,7 @@ class Energy {
   static constexpr double kSoftening = 1e-3;  // rad or m
 
   // The skeleton must outlive the energy.
+  // The skeleton must outlive the energy.
   Energy(const Skeleton& skeleton, const Eigen::VectorXd& weights, std::vector<KernelTerm> terms);
 
   double value(const Eigen::VectorXd& angles) const;
