@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace sparse_mocap::tautges2011 {
 namespace {
@@ -18,12 +19,12 @@ Eigen::VectorXd best_start(const Energy& energy, const PoseSubspace& subspace,
   Eigen::VectorXd best;
   double lowest = std::numeric_limits<double>::infinity();
   for (const auto& start : starts) {
-    const Eigen::VectorXd coordinates = subspace.coordinates(start);
+    Eigen::VectorXd coordinates = subspace.coordinates(start);
     if (starts.size() == 1) return coordinates;
     const double value = energy.value(subspace.pose(coordinates));
     if (value >= lowest) continue;
     lowest = value;
-    best = coordinates;
+    best = std::move(coordinates);
   }
   return best;
 }
@@ -45,16 +46,18 @@ Minimum minimize(const Energy& energy, const PoseSubspace& subspace,
   while (minimum.iterations < max_iterations && !minimum.is_converged) {
     ++minimum.iterations;
     Eigen::VectorXd step = model_step(model);
+    const double promised = -0.5 * model.gradient.dot(step);
+    const double negligible = kRelativeDecrease * std::abs(model.value);
     double value = energy.value(subspace.pose(y + step));
     for (int halving = 0; value > model.value && halving < kMaxHalvings; ++halving) {
       step *= 0.5;
       value = energy.value(subspace.pose(y + step));
     }
     if (value > model.value) {
-      minimum.is_converged = true;
+      minimum.is_converged = promised <= negligible;
       break;
     }
-    minimum.is_converged = model.value - value <= kRelativeDecrease * std::abs(model.value);
+    minimum.is_converged = model.value - value <= negligible;
     y += step;
     model = energy.majorised(subspace.pose(y), subspace.basis);
   }

@@ -13,7 +13,7 @@ struct Minimum {
   Eigen::VectorXd angles;  // rad, in the subspace
   double energy = 0.0;
   int iterations = 0;
-  bool is_converged = false;
+  bool is_converged = false;  // false: out of iterations, or no shorter step went down
 };
 
 // The pose of least energy in the subspace (equation (2), section 5.3), by majorise-minimise: each
