@@ -58,10 +58,7 @@ class DatabaseReader {
   }
 
   void check_checksums() const {
-    std::string all;
-    for (const auto& [key, value] : view_.metadata)
-      if (key != "metadata_checksum") all += key + '\0' + value + '\0';
-    if (checksum(std::as_bytes(std::span(all))) != text("metadata_checksum"))
+    if (metadata_checksum(view_.metadata) != text(kMetadataChecksum))
       refuse("its metadata does not match its checksum");
     const json checksums = json::parse(text("checksums"));
     for (const auto& tensor : view_.tensors)

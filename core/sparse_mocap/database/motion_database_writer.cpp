@@ -106,9 +106,7 @@ std::map<std::string, std::string> metadata_of(const DatabaseContent& content,
       {"build", content.build_info},
       {"checksums", checksums.dump()},
   };
-  std::string all;
-  for (const auto& [key, value] : metadata) all += key + '\0' + value + '\0';
-  metadata["metadata_checksum"] = checksum(std::as_bytes(std::span(all)));
+  metadata[kMetadataChecksum] = metadata_checksum(metadata);
   return metadata;
 }
 

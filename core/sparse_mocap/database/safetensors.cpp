@@ -184,4 +184,16 @@ std::string checksum(std::span<const std::byte> bytes) {
   return text;
 }
 
+std::string metadata_checksum(const std::map<std::string, std::string>& metadata) {
+  std::string all;
+  for (const auto& [key, value] : metadata) {
+    if (key == kMetadataChecksum) continue;
+    for (const auto& text : {key, value}) {
+      all += text;
+      all += '\0';
+    }
+  }
+  return checksum(std::as_bytes(std::span(all)));
+}
+
 }  // namespace sparse_mocap

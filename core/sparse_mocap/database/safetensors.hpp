@@ -45,4 +45,8 @@ SafetensorsView parse_safetensors(std::span<const std::byte> file,
 // XXH3 (64 bit) as 16 hexadecimal digits.
 std::string checksum(std::span<const std::byte> bytes);
 
+// The checksum over all entries but kMetadataChecksum, which holds it.
+inline constexpr char kMetadataChecksum[] = "metadata_checksum";
+std::string metadata_checksum(const std::map<std::string, std::string>& metadata);
+
 }  // namespace sparse_mocap

@@ -122,14 +122,6 @@ std::vector<std::string> unique_names(std::vector<std::string> names) {
   return names;
 }
 
-JointTransforms rest_pose(const Skeleton& skeleton) {
-  JointTransforms rest;
-  forward_kinematics(
-      skeleton, Vec3::Zero(),
-      std::vector<Mat3>(static_cast<std::size_t>(skeleton.num_joints()), Mat3::Identity()), rest);
-  return rest;
-}
-
 void warn_about_size(const JointTransforms& pose, double unit_m, const FileLocation& location,
                      std::vector<ReadWarning>& warnings) {
   constexpr double kSmallest_m = 0.5;

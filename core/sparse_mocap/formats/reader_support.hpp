@@ -30,9 +30,6 @@ std::string checked_name(const TextScanner& scanner, std::string_view token, std
 // The names with a suffix (_2, _3, ...) at each repetition; distinct names stay as they are.
 std::vector<std::string> unique_names(std::vector<std::string> names);
 
-// Where the joints are when no joint is turned and the root is at the origin.
-JointTransforms rest_pose(const Skeleton& skeleton);
-
 // Warns when a figure in this pose is far from human size, and says which unit would make it so.
 void warn_about_size(const JointTransforms& pose, double unit_m, const FileLocation& location,
                      std::vector<ReadWarning>& warnings);

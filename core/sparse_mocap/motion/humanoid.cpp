@@ -56,14 +56,6 @@ std::array<int, kNumStandardJoints> find_joints(const Skeleton& source) {
   return found;
 }
 
-// The source in rest pose, at the origin.
-JointTransforms rest_pose(const Skeleton& source) {
-  JointTransforms rest;
-  const std::vector<Mat3> unturned(static_cast<std::size_t>(source.num_joints()), Mat3::Identity());
-  forward_kinematics(source, Vec3::Zero(), unturned, rest);
-  return rest;
-}
-
 // Where a joint's bone ends when no mapped joint follows: its own bone, else its first child.
 Vec3 last_end(const Skeleton& source, const JointTransforms& rest, int joint) {
   const auto at = static_cast<std::size_t>(joint);

@@ -177,6 +177,14 @@ void forward_kinematics(const Skeleton& skeleton, const Vec3& position_root,
   forward_kinematics(skeleton, position_root, R_joint, out);
 }
 
+JointTransforms rest_pose(const Skeleton& skeleton) {
+  JointTransforms rest;
+  forward_kinematics(
+      skeleton, Vec3::Zero(),
+      std::vector<Mat3>(static_cast<std::size_t>(skeleton.num_joints()), Mat3::Identity()), rest);
+  return rest;
+}
+
 Eigen::MatrixXd position_jacobian(const Skeleton& skeleton, const Eigen::VectorXd& angles,
                                   const JointTransforms& transforms) {
   const int n = skeleton.num_joints();

@@ -83,6 +83,9 @@ void forward_kinematics(const Skeleton& skeleton, const Vec3& position_root,
 void forward_kinematics(const Skeleton& skeleton, const Vec3& position_root,
                         const Eigen::VectorXd& angles, JointTransforms& out);
 
+// Where the joints are when no joint is turned and the root is at the origin.
+JointTransforms rest_pose(const Skeleton& skeleton);
+
 // d(end of every joint, stacked x y z) / d(angles): 3 joints x angles (m/rad), at the pose that
 // transforms holds; the root's pivot stays where it is.
 Eigen::MatrixXd position_jacobian(const Skeleton& skeleton, const Eigen::VectorXd& angles,
