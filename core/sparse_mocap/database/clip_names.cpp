@@ -29,7 +29,8 @@ char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned 
 
 // Matches one [..] set at the front of pattern; its length in consumed, 0 when it is not closed.
 bool matches_set(std::string_view pattern, char c, std::size_t& consumed) {
-  const auto close = pattern.find(']', 2);
+  // A bracket that comes first is one of the set.
+  const auto close = pattern.find(']', pattern.substr(1, 1) == "!" ? 3 : 2);
   consumed = 0;
   if (close == std::string_view::npos) return false;
   consumed = close + 1;

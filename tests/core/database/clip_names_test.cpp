@@ -61,6 +61,9 @@ TEST(MatchesGlob, KnowsSets) {
   EXPECT_FALSE(matches_glob("take[!0-9]", "take7"));
   EXPECT_TRUE(matches_glob("take[!0-9]", "takex"));
   EXPECT_TRUE(matches_glob("[]]", "]"));
+  EXPECT_TRUE(matches_glob("[!]a]", "b"));
+  EXPECT_FALSE(matches_glob("[!]a]", "]"));
+  EXPECT_FALSE(matches_glob("[!]a]", "a"));
   EXPECT_TRUE(matches_glob("[a-]", "-"));
   EXPECT_TRUE(matches_glob("*[12].bvh", "walk2.bvh"));
 }
