@@ -35,6 +35,7 @@ void bind_errors(py::module_& m) {
   format_error.attr("line") = 0;
   format_error.attr("column") = 0;
   m.attr("FormatError") = format_error;
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 asks for this signature
   py::register_exception_translator([](std::exception_ptr pointer) {
     try {
       if (pointer) std::rethrow_exception(pointer);

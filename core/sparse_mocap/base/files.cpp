@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <system_error>
 
 #ifdef _WIN32
@@ -112,7 +111,8 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
   }
   std::FILE* file = std::fopen(path.string().c_str(), "rb");
   if (file == nullptr) {
-    throw FormatError({path}, std::string("cannot be read: ") + std::strerror(errno));
+    throw FormatError({path},
+                      std::string("cannot be read: ") + std::generic_category().message(errno));
   }
   std::string content(size, '\0');
   const std::size_t got = std::fread(content.data(), 1, content.size(), file);

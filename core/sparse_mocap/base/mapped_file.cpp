@@ -2,9 +2,9 @@
 #include "sparse_mocap/base/mapped_file.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <limits>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #ifndef _WIN32
@@ -77,12 +77,14 @@ std::shared_ptr<const Bytes> map_file(const std::filesystem::path& path) {
   const Descriptor file(path);
   struct stat status {};
   if (file.value < 0 || fstat(file.value, &status) != 0)
-    throw FormatError({path}, std::string("cannot be read: ") + std::strerror(errno));
+    throw FormatError({path},
+                      std::string("cannot be read: ") + std::generic_category().message(errno));
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) return own_bytes({});
   void* address = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.value, 0);
   if (address == MAP_FAILED)
-    throw FormatError({path}, std::string("cannot be mapped: ") + std::strerror(errno));
+    throw FormatError({path},
+                      std::string("cannot be mapped: ") + std::generic_category().message(errno));
   return std::make_shared<MappedBytes>(address, size);
 #endif
 }

@@ -15,8 +15,8 @@ struct GaussianFilter {
   double reach_s() const { return 3.0 * sigma_s; }
 };
 
-// Two -3 dB points of the chain that every accelerometer signal passes: marker jitter must go
-// before positions are differentiated twice, and what the database's rate cannot carry must go
+// The two filters that every virtual signal passes (-3 dB points beside them): marker jitter must
+// go before positions are differentiated twice, and what the database's rate cannot carry must go
 // before readings are sampled.
 inline constexpr GaussianFilter kMarkerFilter{0.0066};   // 20 Hz, on positions
 inline constexpr GaussianFilter kReadingFilter{0.0115};  // 11.5 Hz, on readings

@@ -38,8 +38,8 @@ struct Config {
   OlngConfig olng;
 
   // Weights, equation (1).
-  int num_paths = 256;         // I, at most a quarter of K and, from kFewestPaths on,
-  double path_fraction = 1.0;  // this share of the database
+  int num_paths = 256;         // I, at most a quarter of K
+  double path_fraction = 1.0;  // I is at most this share of the database, or kFewestPaths
   WeightRule weight_rule = WeightRule::linear;
   double sharpness = 1.0;  // softmax only
 

@@ -31,7 +31,7 @@ struct FeatureLayout {
   int reach_back() const;  // frames
 };
 
-// Adds a Gaussian part around centre, cut to taps in [first, last] and normalised to sum 1.
+// The taps of a Gaussian around centre, cut to frames [first, last] and normalised to sum 1.
 std::vector<Tap> gaussian_taps(double centre, double sigma_frames, int first, int last);
 
 // The readings of frame rows, 3 x sensors columns: what the worn sensors would read.
@@ -43,7 +43,8 @@ FeatureRows database_readings(const MotionDatabase& database,
 FeatureRows database_features(const MotionDatabase& database, const FeatureRows& readings,
                               const FeatureLayout& layout, std::span<const float> weights);
 
-// The features of rows[at] of a take of which rows [0, size) are known; windows end there likewise.
+// The features of row `at`; of the readings only rows [begin, end) are looked at, and the outermost
+// hold beyond.
 void feature_at(const FeatureRows& readings, Eigen::Index begin, Eigen::Index end, Eigen::Index at,
                 const FeatureLayout& layout, std::span<const float> weights,
                 std::span<float> feature);
