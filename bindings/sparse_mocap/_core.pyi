@@ -83,11 +83,23 @@ def read_motion(path: Path, *, amc_rate_hz: float = 120.0) -> tuple[Motion, list
 def write_bvh(path: Path, motion: Motion) -> None:
     """Writes atomically, in centimetres."""
 
-def standard_motion(motion: Motion, skeleton: Skeleton | None = None) -> tuple[Motion, list[str]]:
+def standard_motion(
+    motion: Motion, skeleton: Skeleton | None = None, joints: dict[str, str] = ...
+) -> tuple[Motion, list[str]]:
     """The motion on the standard skeleton of 21 joints (its own proportions when None).
 
-    Also gives warnings. Raises MappingError.
+    joints names the motion's joint of some standard ones; the others are found. Also gives
+    warnings. Raises MappingError.
     """
+
+def mapped_joints(motion: Motion, joints: dict[str, str] = ...) -> dict[str, str]:
+    """The motion's joint of each standard one that it has. Raises MappingError."""
+
+def read_mapping(path: Path) -> dict[str, str]:
+    """The joints of a mapping file, for standard_motion. Raises FormatError."""
+
+def write_mapping(path: Path, joints: dict[str, str]) -> None:
+    """Writes a mapping file atomically."""
 
 def site_names() -> list[str]: ...
 def simulate(

@@ -4,6 +4,7 @@
 #include "sparse_mocap/formats/motion_file.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 #include "sparse_mocap/motion/humanoid.hpp"
+#include "sparse_mocap/motion/humanoid_file.hpp"
 
 namespace sparse_mocap::python {
 namespace {
@@ -91,13 +92,18 @@ std::pair<Motion, std::vector<std::string>> read_motion(const std::filesystem::p
   return {std::move(file.motion), std::move(warnings)};
 }
 
-std::pair<Motion, std::vector<std::string>> standard_motion(
-    const Motion& motion, const std::optional<Skeleton>& skeleton) {
-  const HumanoidMapping mapping = map_humanoid(motion.skeleton);
+std::pair<Motion, std::vector<std::string>> standard_motion(const Motion& motion,
+                                                            const std::optional<Skeleton>& skeleton,
+                                                            const JointNames& joints) {
+  const HumanoidMapping mapping = map_humanoid(motion, joints);
   std::vector<std::string> warnings = mapping.warnings;
   const Skeleton target = skeleton ? *skeleton : make_standard_skeleton(mapping.bones);
   Motion out = to_standard(motion, mapping, target, &warnings);
   return {std::move(out), std::move(warnings)};
+}
+
+JointNames mapped_joints(const Motion& motion, const JointNames& joints) {
+  return joint_names(motion.skeleton, map_humanoid(motion, joints));
 }
 
 }  // namespace
@@ -141,7 +147,11 @@ void bind_motion(py::module_& m) {
         release());
   m.def("write_bvh", &write_bvh, py::arg("path"), py::arg("motion"), release());
   m.def("standard_motion", &standard_motion, py::arg("motion"), py::arg("skeleton") = py::none(),
+        py::arg("joints") = JointNames(), release());
+  m.def("mapped_joints", &mapped_joints, py::arg("motion"), py::arg("joints") = JointNames(),
         release());
+  m.def("read_mapping", &read_mapping, py::arg("path"));
+  m.def("write_mapping", &write_mapping, py::arg("path"), py::arg("joints"));
 }
 
 }  // namespace sparse_mocap::python

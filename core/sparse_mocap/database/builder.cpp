@@ -94,7 +94,7 @@ class Builder {
         const MotionFile file = read_motion_file(path, options_.read);
         if (file.motion.num_frames() < kFewestFrames)
           throw FormatError({path}, "has fewer than 3 frames");
-        const auto mapping = map_humanoid(file.motion.skeleton);
+        const auto mapping = map_humanoid(file.motion);
         if (seen.insert(body_key(labels_of(path).actor, mapping.bones)).second)
           bodies.push_back(mapping.bones);
         num_source_seconds_ += file.motion.duration_s();
@@ -137,7 +137,7 @@ class Builder {
     const MotionFile file = read_motion_file(path, options_.read);
     for (const auto& warning : file.warnings)
       report_.warnings.push_back(FormatError(warning.location, warning.text).what());
-    auto mapping = map_humanoid(file.motion.skeleton);
+    auto mapping = map_humanoid(file.motion);
     std::vector<std::string> warnings = mapping.warnings;
     const Motion motion = to_standard(file.motion, mapping, content_.skeleton, &warnings);
     for (const auto& warning : warnings)

@@ -10,9 +10,10 @@
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <stdexcept>
 
 #include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/base/strict_json.hpp"
 
 namespace sparse_mocap {
 namespace {
@@ -40,23 +41,11 @@ ElementType type_named(const std::string& name, const std::filesystem::path& pat
   refuse(path, "unknown element type '" + name + "'");
 }
 
-// JSON that refuses repeated keys, which would let two readers see two different files.
-// The parser takes a NUL for the end of the text, which would hide what follows it.
-json parse_strictly(const std::string& text, const std::filesystem::path& path) {
-  if (text.find('\0') != std::string::npos) refuse(path, "the header is not JSON");
-  std::vector<std::set<std::string>> open_objects;
-  const auto watch = [&](int, json::parse_event_t event, json& value) {
-    if (event == json::parse_event_t::object_start) open_objects.emplace_back();
-    if (event == json::parse_event_t::object_end) open_objects.pop_back();
-    if (event == json::parse_event_t::key &&
-        !open_objects.back().insert(value.get<std::string>()).second)
-      refuse(path, "the header repeats the key '" + value.get<std::string>() + "'");
-    return true;
-  };
+json parse_header(const std::string& text, const std::filesystem::path& path) {
   try {
-    return json::parse(text, watch);
-  } catch (const json::exception&) {
-    refuse(path, "the header is not JSON");
+    return parse_json_strictly(text);
+  } catch (const std::invalid_argument& error) {
+    refuse(path, std::string("the header ") + error.what());
   }
 }
 
@@ -155,7 +144,7 @@ SafetensorsView parse_safetensors(std::span<const std::byte> file,
                                   const std::filesystem::path& path) {
   const auto size = header_size(file, path);
   const std::string text(reinterpret_cast<const char*>(file.data()) + kPrefixBytes, size);
-  const json header = parse_strictly(text, path);
+  const json header = parse_header(text, path);
   if (!header.is_object()) refuse(path, "the header is not an object");
   if (header.size() > kMaxTensors) refuse(path, "the header lists too many arrays");
   const auto data = file.subspan(kPrefixBytes + size);

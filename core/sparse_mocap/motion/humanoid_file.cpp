@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/motion/humanoid_file.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/base/files.hpp"
+#include "sparse_mocap/base/strict_json.hpp"
+
+namespace sparse_mocap {
+namespace {
+
+constexpr const char* kFormat = "sparse_mocap_mapping";
+constexpr std::size_t kMaxBytes = 1'000'000;
+
+nlohmann::json parse(const std::filesystem::path& path) {
+  try {
+    return parse_json_strictly(read_file(path, kMaxBytes));
+  } catch (const std::invalid_argument& error) {
+    throw FormatError({path}, std::string("the mapping ") + error.what());
+  }
+}
+
+}  // namespace
+
+JointNames read_mapping(const std::filesystem::path& path) {
+  const nlohmann::json file = parse(path);
+  if (!file.is_object() || file.value("format", nlohmann::json()) != kFormat)
+    throw FormatError({path}, "is not a mapping of joints",
+                      std::string("it must be an object with \"format\": \"") + kFormat + "\"");
+  for (const auto& [key, value] : file.items())
+    if (key != "format" && key != "joints")
+      throw FormatError({path}, "unknown key '" + key + "'", "known: format, joints");
+  JointNames joints;
+  try {
+    joints = file.at("joints").get<JointNames>();
+  } catch (const nlohmann::json::exception&) {
+    throw FormatError({path}, "'joints' must be an object from standard joints to the file's");
+  }
+  const auto& names = standard_joint_names();
+  for (const auto& [standard, name] : joints)
+    if (std::find(names.begin(), names.end(), standard) == names.end())
+      throw FormatError({path}, "'" + standard + "' is no standard joint",
+                        "the nearest is '" + nearest_standard_joint(standard) + "'");
+  return joints;
+}
+
+void write_mapping(const std::filesystem::path& path, const JointNames& joints) {
+  const nlohmann::ordered_json file{{"format", kFormat}, {"joints", joints}};
+  write_file_atomically(path, file.dump(2) + "\n");
+}
+
+JointNames joint_names(const Skeleton& source, const HumanoidMapping& mapping) {
+  JointNames names;
+  for (std::size_t j = 0; j < mapping.source.standard.size(); ++j)
+    if (const int s = mapping.source.standard[j]; s >= 0)
+      names.emplace(standard_joint_names()[j], source.joint(s).name);
+  return names;
+}
+
+}  // namespace sparse_mocap

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/motion/humanoid_rest.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace sparse_mocap {
+namespace {
+
+using namespace standard_joint;
+
+using StandardRotations = std::array<Mat3, kNumStandardJoints>;
+
+// Limbs, whose rest direction differs between a T-pose and an A-pose; the hands last.
+constexpr std::array kLimbs{lfemur,  ltibia,   rfemur,  rtibia, lhumerus,
+                            lradius, rhumerus, rradius, lwrist, rwrist};
+constexpr std::size_t kNumLongLimbs = 8;
+
+// Below this a limb's rest direction is how the actor was measured, above it how the pose is meant.
+constexpr double kPoseConvention_rad = 10.0 * kRadiansPerDegree;
+// A bone shorter than this part of the thigh has no direction.
+constexpr double kNoBone = 1e-3;
+// A limb that rests bent by more than this tells its hinge's axis.
+constexpr double kBent_rad = 10.0 * kRadiansPerDegree;
+
+double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+// The frame whose x is along a direction and whose y is nearest to another one.
+Mat3 frame(const Vec3& along, const Vec3& second) {
+  Mat3 R;
+  R.col(0) = along.normalized();
+  R.col(2) = along.cross(second).normalized();
+  R.col(1) = R.col(2).cross(R.col(0));
+  return R;
+}
+
+// The standard joints' world rotations where limbs rest as the standard's do, as in files of HDM05
+// and CMU: identity, but for the hands. Nothing where some limb rests elsewhere.
+std::optional<StandardRotations> shared_rest(const StandardPoints& points) {
+  StandardRotations R_world_standard;
+  R_world_standard.fill(Mat3::Identity());
+  const double no_bone = kNoBone * points.bone(lfemur).norm();
+  for (std::size_t i = 0; i < kLimbs.size(); ++i) {
+    const auto j = kLimbs[i];
+    const Vec3 bone = points.bone(j);
+    if (bone.norm() < no_bone) continue;
+    if (angle_between(bone, template_bones()[j]) < kPoseConvention_rad) continue;
+    if (i < kNumLongLimbs) return std::nullopt;
+    R_world_standard[j] = smallest_rotation(template_bones()[j], bone);
+  }
+  return R_world_standard;
+}
+
+// The axis about which exporters' limbs bend in the standard's rest pose: knees as the standard's
+// own, elbows forward where arms are held out.
+Vec3 usual_hinge(Index lower) {
+  if (lower == lradius) return -Vec3::UnitY();
+  if (lower == rradius) return Vec3::UnitY();
+  return hinge_axis(lower);
+}
+
+// Finds for each standard joint the world rotation that brings its rest into the source's posture.
+class RestMatcher {
+ public:
+  RestMatcher(const StandardPoints& points, const std::array<Vec3, 4>& hinges)
+      : points_(points), hinges_(hinges) {
+    no_bone_ = kNoBone * points.bone(lfemur).norm();
+    R_.fill(Mat3::Identity());
+  }
+
+  StandardRotations match() {
+    const StandardBones& rest = template_bones();
+    R_[root] = frame(points_.left_hips, points_.up) *
+               frame(Vec3::UnitX(), rest[lowerback] + rest[upperback] + rest[thorax]).transpose();
+    R_[lhipjoint] = R_[rhipjoint] = R_[root];
+    match_spine();
+    for (const auto j : {lowerneck, upperneck}) swing(j, R_[thorax]);
+    swing(head, R_[thorax]);
+    match_limb(0, R_[root]);
+    match_limb(1, R_[root]);
+    for (const auto j : {lclavicle, rclavicle}) swing(j, R_[thorax]);
+    match_hand(lwrist, lhumerus, lradius);
+    match_hand(rwrist, rhumerus, rradius);
+    match_limb(2, R_[thorax]);
+    match_limb(3, R_[thorax]);
+    return R_;
+  }
+
+ private:
+  bool has(Index j) const { return points_.bone(j).norm() > no_bone_; }
+
+  // From a frame by the smallest turn that lays the standard's bone on the source's.
+  void swing(Index j, const Mat3& R_from) {
+    R_[j] = R_from;
+    if (has(j)) R_[j] = smallest_rotation(R_from * template_bones()[j], points_.bone(j)) * R_from;
+  }
+
+  void match_spine() {
+    const Vec3 hips = points_.left_hips.normalized();
+    const Vec3 shoulders = points_.left_shoulders.normalized();
+    for (const auto& [j, left] : {std::pair<Index, Vec3>{lowerback, hips},
+                                  {upperback, hips + shoulders},
+                                  {thorax, shoulders}}) {
+      R_[j] = R_[root];
+      if (has(j))
+        R_[j] =
+            frame(points_.bone(j), left) * frame(template_bones()[j], Vec3::UnitX()).transpose();
+    }
+  }
+
+  // The hinge's axis is the one about which the source bends the limb, if it tells; else that of
+  // the bend in this posture; else exporters' knees bend as the standard's do, and elbows forward
+  // where arms are held out.
+  void match_limb(std::size_t limb, const Mat3& R_from) {
+    const auto& [upper, lower] = kHingedLimbs[limb];
+    swing(upper, R_from);
+    Vec3 axis = R_[upper] * usual_hinge(lower);
+    const Vec3 bend = points_.bone(upper).cross(points_.bone(lower));
+    if (!hinges_[limb].isZero()) {
+      axis = hinges_[limb];
+    } else if (angle_between(points_.bone(upper), points_.bone(lower)) > kBent_rad &&
+               bend.dot(axis) > 0.0) {
+      axis = bend;
+    }
+    R_[upper] = frame(points_.bone(upper), axis) *
+                frame(template_bones()[upper], hinge_axis(lower)).transpose();
+    swing(lower, R_[upper]);
+  }
+
+  // Palms rest down where arms are held out, whatever the elbow's axis is called.
+  void match_hand(Index wrist, Index humerus, Index radius) {
+    swing(humerus, R_[thorax]);
+    swing(radius, R_[humerus]);
+    swing(wrist, R_[radius]);
+  }
+
+  const StandardPoints& points_;
+  const std::array<Vec3, 4>& hinges_;
+  StandardRotations R_;
+  double no_bone_ = 0.0;
+};
+
+// The direction beside the bone by which a joint's twist is told, in the standard's rest.
+Vec3 second_direction(Index j) {
+  switch (j) {
+    case lfemur:
+    case ltibia:
+      return hinge_axis(ltibia);
+    case rfemur:
+    case rtibia:
+      return hinge_axis(rtibia);
+    case lhumerus:
+    case lradius:
+    case lwrist:
+      return hinge_axis(lradius);
+    case rhumerus:
+    case rradius:
+    case rwrist:
+      return hinge_axis(rradius);
+    case lclavicle:
+    case rclavicle:
+      return Vec3::UnitY();
+    default:
+      return Vec3::UnitX();
+  }
+}
+
+const Skeleton& template_skeleton() {
+  static const Skeleton skeleton = make_standard_skeleton(template_bones());
+  return skeleton;
+}
+
+Vec3 nearest_axis(const Vec3& direction) {
+  Eigen::Index axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  return direction[axis] > 0.0 ? Vec3(Vec3::Unit(axis)) : Vec3(-Vec3::Unit(axis));
+}
+
+// Rigs whose angles at zero are no pose have their bones along axes of their joints, and then also
+// their hinges: the nearest axes are the same for every clip, the frame they were told from is not.
+void snap_to_joint_axes(Index j, Mat3& R_joint_standard) {
+  constexpr double kNearest_rad = 45.0 * kRadiansPerDegree, kAlong_rad = 6.0 * kRadiansPerDegree;
+  const Vec3 bone = template_bones()[j].isZero() ? Vec3::UnitY() : template_bones()[j];
+  const Mat3 R_standard_bone = frame(bone, second_direction(j));
+  const Mat3 R_joint_bone = R_joint_standard * R_standard_bone;
+  Vec3 along = nearest_axis(R_joint_bone.col(0));
+  const Vec3 second = nearest_axis(R_joint_bone.col(1));
+  const bool is_limb = std::find(kLimbs.begin(), kLimbs.end() - 2, j) != kLimbs.end() - 2;
+  if (is_limb && angle_between(along, R_joint_bone.col(0)) > kAlong_rad) along = R_joint_bone.col(0);
+  if (along.cross(second).norm() < 0.5) return;
+  const Mat3 snapped = frame(along, second);
+  if (Eigen::AngleAxisd(snapped.transpose() * R_joint_bone).angle() > kNearest_rad) return;
+  R_joint_standard = snapped * R_standard_bone.transpose();
+}
+
+// The source's bones as seen from the standard joints that they are carried by.
+void measure_bones(const StandardPoints& points, const JointTransforms& posture,
+                   HumanoidMapping& mapping) {
+  StandardRotations R_world;
+  for (std::size_t j = 0; j < kNumStandardJoints; ++j) {
+    const auto parent = static_cast<std::size_t>(template_skeleton().joints()[j].parent);
+    R_world[j] = mapping.carriers[j].empty()
+                     ? R_world[parent]
+                     : carried_rotation(mapping.carriers[j], posture.R_world_joint);
+    mapping.bones[j] =
+        mapping.unit_scale * R_world[j].transpose() * points.bone(static_cast<int>(j));
+  }
+}
+
+// How a hand is turned in one frame tells nothing: its joint's axes are taken to be the forearm's.
+void match_hand_to_forearm(Index radius, Index wrist, Carriers& carriers) {
+  if (carriers[wrist].empty()) return;
+  const Mat3& R_joint_radius = carriers[radius].front().R_joint_standard;
+  carriers[wrist].front().R_joint_standard =
+      frame(R_joint_radius * template_bones()[radius], R_joint_radius * hinge_axis(radius)) *
+      frame(template_bones()[wrist], usual_hinge(radius)).transpose();
+}
+
+}  // namespace
+
+Mat3 smallest_rotation(const Vec3& from, const Vec3& to) {
+  return Quat::FromTwoVectors(from, to).toRotationMatrix();
+}
+
+Vec3 hinge_axis(Index lower) {
+  const Joint& joint = template_skeleton().joint(lower);
+  return joint.R_joint_axes * unit(joint.axes.front());
+}
+
+void match_rest(const Skeleton& source, const RestPosture& rest, HumanoidMapping& mapping) {
+  const StandardPoints points = standard_points(source, mapping.source, rest.transforms);
+  std::optional<StandardRotations> shared;
+  if (rest.is_at_zero) shared = shared_rest(points);
+  const StandardRotations R_world_standard = shared ? *shared : RestMatcher(points, rest.hinges).match();
+  mapping.carriers = find_carriers(source, mapping.source, points, rest.transforms);
+  for (std::size_t j = 0; j < kNumStandardJoints; ++j) {
+    for (auto& carrier : mapping.carriers[j]) {
+      const Mat3& R_world_joint =
+          rest.transforms.R_world_joint[static_cast<std::size_t>(carrier.joint)];
+      carrier.R_joint_standard = R_world_joint.transpose() * R_world_standard[j];
+      if (!rest.is_at_zero) snap_to_joint_axes(static_cast<Index>(j), carrier.R_joint_standard);
+    }
+  }
+  if (!rest.is_at_zero) {
+    match_hand_to_forearm(lradius, lwrist, mapping.carriers);
+    match_hand_to_forearm(rradius, rwrist, mapping.carriers);
+  }
+  measure_bones(points, rest.transforms, mapping);
+}
+
+}  // namespace sparse_mocap

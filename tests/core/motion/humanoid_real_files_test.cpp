@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Recordings of the world; they are not in the repository, see format_test_support.hpp.
+#include <gtest/gtest.h>
+
+#include "formats/format_test_support.hpp"
+#include "motion/humanoid_test_support.hpp"
+#include "sparse_mocap/motion/heading.hpp"
+
+namespace sparse_mocap {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::real_data;
+
+Motion read_some(const fs::path& path) {
+  Motion motion = read_motion_file(path).motion;
+  return motion.num_frames() > 400 ? trimmed(motion, 0, 400) : motion;
+}
+
+Motion mapped(const Motion& motion, const HumanoidMapping& mapping) {
+  return to_standard(motion, mapping, make_standard_skeleton(mapping.bones));
+}
+
+// Limb directions of each file of an exporter; files that are no people must be listed.
+TEST(HumanoidRealFiles, EveryExporterKeepsItsLimbDirections) {
+  SKIP_WITHOUT_REAL_DATA("bvh_exporters");
+  const std::vector<std::string> no_people{"full_precision_frame_time.bvh",
+                                           "rotation_first_root.bvh"};
+  int count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(real_data("bvh_exporters"))) {
+    if (!is_motion_file(entry.path())) continue;
+    const Motion motion = read_some(entry.path());
+    const std::string name = entry.path().filename().string();
+    if (std::find(no_people.begin(), no_people.end(), name) != no_people.end()) {
+      EXPECT_THROW(map_humanoid(motion), MappingError) << entry.path();
+      continue;
+    }
+    HumanoidMapping mapping;
+    ASSERT_NO_THROW(mapping = map_humanoid(motion)) << entry.path();
+    const auto errors = testing::direction_errors(motion, mapping, mapped(motion, mapping));
+    EXPECT_LT(errors.mean_deg, 2.0) << entry.path();
+    ++count;
+  }
+  EXPECT_GT(count, 0);
+}
+
+// Unpack bandai_namco_subset.tar.xz beside itself for this.
+TEST(HumanoidRealFiles, BonesAlongTheirJointsAxesKeepTheirDirections) {
+  SKIP_WITHOUT_REAL_DATA("bandai_namco/set1");
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator(real_data("bandai_namco/set1"))) {
+    if (!is_motion_file(entry.path()) || ++count % 8 != 0) continue;
+    const Motion motion = read_some(entry.path());
+    const HumanoidMapping mapping = map_humanoid(motion);
+    const auto errors = testing::direction_errors(motion, mapping, mapped(motion, mapping));
+    EXPECT_LT(errors.mean_deg, 2.0) << entry.path();
+  }
+}
+
+// The standard skeleton is HDM05's own: each of its joints must stay where it was.
+TEST(HumanoidRealFiles, Hdm05IsCarriedOverExactly) {
+  SKIP_WITHOUT_REAL_DATA("hdm05");
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator(real_data("hdm05"))) {
+    if (!is_motion_file(entry.path()) || ++count % 12 != 0) continue;
+    const Motion motion = read_some(entry.path());
+    const HumanoidMapping mapping = map_humanoid(motion);
+    
+    const Motion out = mapped(motion, mapping);
+    ASSERT_EQ(out.num_frames(), motion.num_frames());
+    for (int t = 0; t < motion.num_frames(); t += 10) {
+      const auto expected = motion.transforms(t), actual = out.transforms(t);
+      for (int j = 0; j < kNumStandardJoints; ++j) {
+        const auto at = static_cast<std::size_t>(j);
+        const int s = motion.skeleton.find(standard_joint_names()[at]);
+        ASSERT_GE(s, 0);
+        EXPECT_LT((actual.end[at] - expected.end[static_cast<std::size_t>(s)]).norm(), 1e-9)
+            << entry.path() << " " << standard_joint_names()[at];
+      }
+    }
+  }
+  EXPECT_GT(count, 0);
+}
+
+TEST(HumanoidRealFiles, CmuAgreesInBothFormats) {
+  SKIP_WITHOUT_REAL_DATA("cmu/bvh/02_01.bvh");
+  for (const std::string name : {"02_01", "02_02", "02_05"}) {
+    const Motion amc = read_motion_file(real_data("cmu/asf_amc/" + name + ".amc")).motion;
+    const Motion bvh = read_motion_file(real_data("cmu/bvh/" + name + ".bvh")).motion;
+    const HumanoidMapping mapping = map_humanoid(amc);
+    const Skeleton standard = make_standard_skeleton(mapping.bones);
+    const Eigen::MatrixXd p =
+        joint_positions(to_standard(amc, mapping, standard), PositionFrame::heading);
+    const Eigen::MatrixXd q =
+        joint_positions(to_standard(bvh, map_humanoid(bvh), standard), PositionFrame::heading);
+    ASSERT_EQ(p.cols(), q.cols()) << name;
+    const Eigen::MatrixXd difference = p - q;
+    double mean_m = 0.0;
+    for (Eigen::Index t = 0; t < p.cols(); ++t)
+      for (Eigen::Index j = 0; j < kNumStandardJoints; ++j)
+        mean_m += difference.block<3, 1>(3 * j, t).norm();
+    EXPECT_LT(mean_m / static_cast<double>(p.cols() * kNumStandardJoints), 1e-3) << name;
+  }
+}
+
+}  // namespace
+}  // namespace sparse_mocap
