@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         Clip,
         ConfigError,
         FormatError,
+        HumanoidMapping,
         MappingError,
         Motion,
         MotionDatabase,
@@ -31,17 +32,23 @@ if TYPE_CHECKING:
         __version__,
         build_database,
         filtered_at,
+        find_motion_files,
+        map_humanoid,
         method_names,
         nearest_poses,
         nearest_windows,
         playback_best_path,
         preset_names,
+        read_mapping,
         read_motion,
         simulate,
         site_names,
+        standard_joint_names,
         standard_motion,
         write_bvh,
+        write_mapping,
     )
+    from .mappings import forget_mapping, mapping_folder, remember_mapping, to_standard
     from .noise import NoiseModel, noise_presets, noisy
     from .positions import read_positions, write_positions
     from .take import SensorRecord, Take, TakeError, read_take, resampled, simulated, write_take
@@ -54,6 +61,7 @@ __all__ = [
     "Clip",
     "ConfigError",
     "FormatError",
+    "HumanoidMapping",
     "MappingError",
     "Motion",
     "MotionDatabase",
@@ -68,6 +76,10 @@ __all__ = [
     "__version__",
     "build_database",
     "filtered_at",
+    "find_motion_files",
+    "forget_mapping",
+    "map_humanoid",
+    "mapping_folder",
     "method_names",
     "nearest_poses",
     "nearest_windows",
@@ -75,21 +87,29 @@ __all__ = [
     "noisy",
     "playback_best_path",
     "preset_names",
+    "read_mapping",
     "read_motion",
     "read_positions",
     "read_take",
+    "remember_mapping",
     "resampled",
     "simulate",
     "simulated",
     "site_names",
+    "standard_joint_names",
     "standard_motion",
+    "to_standard",
     "write_bvh",
+    "write_mapping",
     "write_positions",
     "write_take",
 ]
 
 _PYTHON_HOMES = {
     **dict.fromkeys(("NoiseModel", "noise_presets", "noisy"), ".noise"),
+    **dict.fromkeys(
+        ("forget_mapping", "mapping_folder", "remember_mapping", "to_standard"), ".mappings"
+    ),
     **dict.fromkeys(("read_positions", "write_positions"), ".positions"),
     **dict.fromkeys(
         ("SensorRecord", "Take", "TakeError", "read_take", "resampled", "simulated", "write_take"),

@@ -72,6 +72,8 @@ class Motion:
         """(T, J, 4) rotation of each joint relative to its parent, w x y z."""
     def joint_positions(self, frame: str = "world") -> Floats:
         """(T, J, 3) m, the joints' ends; frame: 'heading' (standard skeleton), 'root', 'world'."""
+    def pivot_positions(self) -> Floats:
+        """(T, J, 3) m, world, what the joints turn about."""
     def resampled(self, rate_hz: float) -> Motion: ...
     def trimmed(self, begin: int, end: int) -> Motion: ...
     def reversed(self) -> Motion: ...
@@ -83,23 +85,54 @@ def read_motion(path: Path, *, amc_rate_hz: float = 120.0) -> tuple[Motion, list
 def write_bvh(path: Path, motion: Motion) -> None:
     """Writes atomically, in centimetres."""
 
-def standard_motion(
-    motion: Motion, skeleton: Skeleton | None = None, joints: dict[str, str] = ...
-) -> tuple[Motion, list[str]]:
-    """The motion on the standard skeleton of 21 joints (its own proportions when None).
+class HumanoidMapping:
+    """How a foreign skeleton carries the standard one of 21 joints."""
 
-    joints names the motion's joint of some standard ones; the others are found. Also gives
-    warnings. Raises MappingError.
+    @property
+    def joints(self) -> dict[str, str]:
+        """The skeleton's joint for each standard one that it has."""
+    @property
+    def is_by_names(self) -> bool:
+        """False where limbs were recognised by their shape."""
+    @property
+    def unit_scale(self) -> float:
+        """The file's lengths times this are metres."""
+    @property
+    def R_world_file(self) -> Floats:
+        """(3, 3) turns the file's world into one with y up."""
+    @property
+    def warnings(self) -> list[str]: ...
+    def to_standard(
+        self, motion: Motion, skeleton: Skeleton | None = None
+    ) -> tuple[Motion, list[str]]:
+        """The motion on a standard skeleton (of its own proportions when None), and warnings."""
+    def limb_errors_rad(self, motion: Motion, standard: Motion) -> dict[str, tuple[float, float]]:
+        """Mean and worst angle between each limb of a motion and of what to_standard made of it."""
+
+def map_humanoid(motion: Motion, by_hand: dict[str, str] = ...) -> HumanoidMapping:
+    """Finds the body in a motion's skeleton and matches the rest poses.
+
+    by_hand: the skeleton's joint for some standard ones; the others are found by their names, then
+    by their shape. Raises MappingError.
     """
 
-def mapped_joints(motion: Motion, joints: dict[str, str] = ...) -> dict[str, str]:
-    """The motion's joint of each standard one that it has. Raises MappingError."""
+def standard_motion(
+    motion: Motion, skeleton: Skeleton | None = None, by_hand: dict[str, str] = ...
+) -> tuple[Motion, list[str]]:
+    """map_humanoid and to_standard in one. Raises MappingError."""
 
+def standard_joint_names() -> list[str]: ...
 def read_mapping(path: Path) -> dict[str, str]:
-    """The joints of a mapping file, for standard_motion. Raises FormatError."""
+    """A mapping by hand, from standard joints to a skeleton's. Raises FormatError."""
 
 def write_mapping(path: Path, joints: dict[str, str]) -> None:
-    """Writes a mapping file atomically."""
+    """Writes a mapping by hand atomically."""
+
+def remembered_mapping(folder: Path, skeleton: Skeleton) -> dict[str, str]:
+    """The mapping by hand that a folder keeps for a skeleton, empty when there is none."""
+
+def remembered_mapping_path(folder: Path, skeleton: Skeleton) -> str | os.PathLike[str]:
+    """Where the folder keeps it."""
 
 def site_names() -> list[str]: ...
 def simulate(
@@ -158,6 +191,12 @@ class MotionDatabase:
         """
     def clip_motion(self, index: int) -> Motion:
         """The clip as a motion on the standard skeleton, starting at the origin."""
+
+def find_motion_files(sources: Sequence[Path], exclude: Sequence[str] = ()) -> list[Path]:
+    """The motion files that the sources are or hold, without those excluded, sorted.
+
+    Raises FormatError when a source does not exist or nothing is left.
+    """
 
 class BuildReport:
     num_files: int

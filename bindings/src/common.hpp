@@ -21,6 +21,7 @@ namespace py = pybind11;
 // One function a file, each binds one concept.
 void bind_errors(py::module_& m);
 void bind_motion(py::module_& m);
+void bind_humanoid(py::module_& m);
 void bind_sensors(py::module_& m);
 void bind_database(py::module_& m);
 void bind_reconstruction(py::module_& m);

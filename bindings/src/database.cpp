@@ -121,6 +121,8 @@ void bind_database(py::module_& m) {
                              })
       .def_readonly("warnings", &BuildReport::warnings);
 
+  m.def("find_motion_files", &find_motion_files, py::arg("sources"),
+        py::arg("exclude") = std::vector<std::string>(), py::call_guard<py::gil_scoped_release>());
   m.def("build_database", &build, py::arg("sources"), py::arg("output"), py::kw_only(),
         py::arg("rate_hz") = 25.0, py::arg("mirror") = false, py::arg("reverse") = false,
         py::arg("tempo_copies") = BuildOptions().tempo_copies,

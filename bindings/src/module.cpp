@@ -9,6 +9,7 @@ PYBIND11_MODULE(_core, m) {
   m.attr("GRAVITY_MPS2") = kGravity_mps2;
   python::bind_errors(m);
   python::bind_motion(m);
+  python::bind_humanoid(m);
   python::bind_sensors(m);
   python::bind_database(m);
   python::bind_reconstruction(m);

@@ -3,8 +3,7 @@
 #include "sparse_mocap/formats/bvh.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
 #include "sparse_mocap/motion/heading.hpp"
-#include "sparse_mocap/motion/humanoid.hpp"
-#include "sparse_mocap/motion/humanoid_file.hpp"
+#include "sparse_mocap/motion/standard_skeleton.hpp"
 
 namespace sparse_mocap::python {
 namespace {
@@ -92,18 +91,15 @@ std::pair<Motion, std::vector<std::string>> read_motion(const std::filesystem::p
   return {std::move(file.motion), std::move(warnings)};
 }
 
-std::pair<Motion, std::vector<std::string>> standard_motion(const Motion& motion,
-                                                            const std::optional<Skeleton>& skeleton,
-                                                            const JointNames& joints) {
-  const HumanoidMapping mapping = map_humanoid(motion, joints);
-  std::vector<std::string> warnings = mapping.warnings;
-  const Skeleton target = skeleton ? *skeleton : make_standard_skeleton(mapping.bones);
-  Motion out = to_standard(motion, mapping, target, &warnings);
-  return {std::move(out), std::move(warnings)};
-}
-
-JointNames mapped_joints(const Motion& motion, const JointNames& joints) {
-  return joint_names(motion.skeleton, map_humanoid(motion, joints));
+py::array_t<double> pivots_of(const Motion& motion) {
+  auto out = new_array({motion.num_frames(), motion.skeleton.num_joints(), 3});
+  auto cells = out.mutable_unchecked<3>();
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    const JointTransforms transforms = motion.transforms(t);
+    for (int j = 0; j < motion.skeleton.num_joints(); ++j)
+      for (int k = 0; k < 3; ++k) cells(t, j, k) = transforms.pivot[static_cast<std::size_t>(j)][k];
+  }
+  return out;
 }
 
 }  // namespace
@@ -136,6 +132,7 @@ void bind_motion(py::module_& m) {
       .def_property_readonly("root_positions", &root_positions)
       .def_property_readonly("rotations", &rotations)
       .def("joint_positions", &positions_of, py::arg("frame") = "world")
+      .def("pivot_positions", &pivots_of)
       .def("resampled", &resampled, py::arg("rate_hz"), release())
       .def("trimmed", &trimmed, py::arg("begin"), py::arg("end"))
       .def("reversed", &reversed)
@@ -146,12 +143,6 @@ void bind_motion(py::module_& m) {
   m.def("read_motion", &read_motion, py::arg("path"), py::kw_only(), py::arg("amc_rate_hz") = 120.0,
         release());
   m.def("write_bvh", &write_bvh, py::arg("path"), py::arg("motion"), release());
-  m.def("standard_motion", &standard_motion, py::arg("motion"), py::arg("skeleton") = py::none(),
-        py::arg("joints") = JointNames(), release());
-  m.def("mapped_joints", &mapped_joints, py::arg("motion"), py::arg("joints") = JointNames(),
-        release());
-  m.def("read_mapping", &read_mapping, py::arg("path"));
-  m.def("write_mapping", &write_mapping, py::arg("path"), py::arg("joints"));
 }
 
 }  // namespace sparse_mocap::python

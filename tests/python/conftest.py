@@ -21,6 +21,12 @@ ACTORS = ("ada", "bruno")
 CLIPS = ("walk_01", "walk_02", "squat_01", "squat_02", "kickleft_01", "kickright_01")
 
 
+@pytest.fixture(autouse=True)
+def no_remembered_mappings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the user of this machine told of their rigs is not the tests' business."""
+    monkeypatch.setenv("SPARSE_MOCAP_MAPPINGS", str(tmp_path / "mappings"))
+
+
 @pytest.fixture(scope="session")
 def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Twelve generated clips: two actors, four classes, two of which have one clip an actor."""

@@ -30,6 +30,7 @@ COMMANDS = (
     ("simulate",),
     ("reconstruct",),
     ("evaluate",),
+    ("inspect",),
 )
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 import numpy as np
 
-from .. import MotionDatabase, read_motion, standard_motion, write_bvh, write_positions
+from .. import MotionDatabase, read_motion, to_standard, write_bvh, write_positions
 from .console import warn
 from .options import FilePath, check_ending, frame_option
 
@@ -31,10 +31,10 @@ def convert(clip: Path, output: Path, skeleton: str, frame: str, fps: float | No
     ending = check_ending(output, ".bvh", ".csv")
     motion, warnings = read_motion(clip)
     if skeleton != "own":
-        motion, more = standard_motion(motion, MotionDatabase(skeleton).skeleton)
+        motion, more = to_standard(motion, MotionDatabase(skeleton).skeleton)
         warnings += more
     elif ending == ".csv":
-        motion, more = standard_motion(motion)
+        motion, more = to_standard(motion)
         warnings += more
     if fps is not None:
         motion = motion.resampled(fps)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from .. import noise_presets, noisy, read_motion, simulated, standard_motion, write_take
+from .. import noise_presets, noisy, read_motion, simulated, to_standard, write_take
 from ..take import Take
 from .console import warn
 from .options import (
@@ -50,7 +50,7 @@ def simulate(
     """
     check_ending(output, ".csv")
     motion, warnings = read_motion(clip)
-    performed, more = standard_motion(motion)
+    performed, more = to_standard(motion)
     ideal = simulated(performed, sites, rate, places_of(sites, places))
     origin = f"simulated from {clip.name} at {rate:g} Hz, noise {noise}, seed {seed}"
     write_take(output, Take(noisy(ideal, noise_presets()[noise], seed).sensors, (origin,)))

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from .. import Cancelled, FormatError, MappingError, read_motion, standard_motion
+from .. import Cancelled, FormatError, MappingError, read_motion, to_standard
 from ..evaluation import motion_files
 from ..table_errors import TableError
 from .generator import generate_library, generate_performance
@@ -49,7 +49,7 @@ def recorded(folder: Path, progress: Progress) -> Choice:
     for done, path in enumerate(files):
         call(done, len(files), path.name)
         try:
-            motion, _ = standard_motion(read_motion(path)[0])
+            motion, _ = to_standard(read_motion(path)[0])
         except (FormatError, MappingError):
             continue  # the database will say so
         lengths.append((motion.num_frames * motion.frame_time_s, path.name, path))

@@ -19,7 +19,7 @@ from .. import (
     read_motion,
     resampled,
     simulated,
-    standard_motion,
+    to_standard,
 )
 from ..take import Take
 
@@ -43,7 +43,7 @@ class Performance:
 
     def motion_on(self, database: MotionDatabase) -> Motion:
         """The truth: the motion on the database's skeleton and at its rate."""
-        return standard_motion(self.motion, database.skeleton)[0].resampled(database.rate_hz)
+        return to_standard(self.motion, database.skeleton)[0].resampled(database.rate_hz)
 
 
 def performed(
@@ -56,7 +56,7 @@ def performed(
     rate_hz: float = SENSOR_RATE_HZ,
 ) -> Performance:
     """Returns the performance of a motion file. Raises FormatError, MappingError and OSError."""
-    motion, _ = standard_motion(read_motion(path)[0])
+    motion, _ = to_standard(read_motion(path)[0])
     take = noisy(simulated(motion, sites, rate_hz), noise_presets()[noise], seed)
     times, readings = resampled(take, database_rate_hz)
     return Performance(motion, take, times, readings)

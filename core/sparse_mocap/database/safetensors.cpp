@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/database/safetensors.hpp"
 
-#include <xxhash.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -162,15 +160,6 @@ SafetensorsView parse_safetensors(std::span<const std::byte> file,
   }
   check_contiguous(view, data, path);
   return view;
-}
-
-std::string checksum(std::span<const std::byte> bytes) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::uint64_t hash = XXH3_64bits(bytes.data(), bytes.size());
-  std::string text(16, '0');
-  for (auto digit = text.rbegin(); digit != text.rend(); ++digit, hash >>= 4)
-    *digit = kDigits[hash & 0xF];
-  return text;
 }
 
 std::string metadata_checksum(const std::map<std::string, std::string>& metadata) {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "sparse_mocap/base/checksum.hpp"
+
 namespace sparse_mocap {
 
 // The safetensors container: a length-prefixed JSON header, then contiguous little-endian arrays.
@@ -41,9 +43,6 @@ std::string safetensors_header(const std::map<std::string, std::string>& metadat
 // FormatError naming path.
 SafetensorsView parse_safetensors(std::span<const std::byte> file,
                                   const std::filesystem::path& path);
-
-// XXH3 (64 bit) as 16 hexadecimal digits.
-std::string checksum(std::span<const std::byte> bytes);
 
 // The checksum over all entries but kMetadataChecksum, which holds it.
 inline constexpr char kMetadataChecksum[] = "metadata_checksum";

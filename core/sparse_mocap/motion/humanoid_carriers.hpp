@@ -26,7 +26,6 @@ Carriers find_carriers(const Skeleton& source, const SourceJoints& joints,
                        const StandardPoints& points, const JointTransforms& posture);
 
 // The standard joint's world rotation: the carriers' mean (of one alone, exactly its own).
-Mat3 carried_rotation(const std::vector<Carrier>& carriers,
-                      const std::vector<Mat3>& R_world_joint);
+Mat3 carried_rotation(const std::vector<Carrier>& carriers, const std::vector<Mat3>& R_world_joint);
 
 }  // namespace sparse_mocap

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
 
+#include "sparse_mocap/base/checksum.hpp"
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/base/files.hpp"
 #include "sparse_mocap/base/strict_json.hpp"
@@ -49,6 +51,20 @@ JointNames read_mapping(const std::filesystem::path& path) {
 void write_mapping(const std::filesystem::path& path, const JointNames& joints) {
   const nlohmann::ordered_json file{{"format", kFormat}, {"joints", joints}};
   write_file_atomically(path, file.dump(2) + "\n");
+}
+
+std::filesystem::path remembered_mapping_path(const std::filesystem::path& folder,
+                                              const Skeleton& source) {
+  std::string tree;
+  for (const auto& joint : source.joints())
+    tree += joint.name + '\n' + std::to_string(joint.parent) + '\n';
+  return folder / (checksum(std::as_bytes(std::span(tree))) + ".json");
+}
+
+JointNames remembered_mapping(const std::filesystem::path& folder, const Skeleton& source) {
+  const auto path = remembered_mapping_path(folder, source);
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored) ? read_mapping(path) : JointNames();
 }
 
 JointNames joint_names(const Skeleton& source, const HumanoidMapping& mapping) {

@@ -16,6 +16,15 @@ JointNames read_mapping(const std::filesystem::path& path);
 // Atomic; throws std::filesystem_error.
 void write_mapping(const std::filesystem::path& path, const JointNames& joints);
 
+// Where a folder of mappings keeps the one for a skeleton; named after the skeleton's joints, so
+// that every file of one rig finds it.
+std::filesystem::path remembered_mapping_path(const std::filesystem::path& folder,
+                                              const Skeleton& source);
+
+// The mapping that the folder keeps for a skeleton, empty when there is none.
+// Throws FormatError when what is kept cannot be read.
+JointNames remembered_mapping(const std::filesystem::path& folder, const Skeleton& source);
+
 // The source's joints of a mapping, as read_mapping gives them.
 JointNames joint_names(const Skeleton& source, const HumanoidMapping& mapping);
 

@@ -113,11 +113,11 @@ class PointsFinder {
   StandardPoints points_;
 };
 
+}  // namespace
+
 double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
-
-}  // namespace
 
 StandardPoints standard_points(const Skeleton& source, const SourceJoints& joints,
                                const JointTransforms& posture) {

@@ -21,6 +21,9 @@ struct StandardPoints {
   }
 };
 
+// The angle between two directions, rad.
+double angle_between(const Vec3& a, const Vec3& b);
+
 StandardPoints standard_points(const Skeleton& source, const SourceJoints& joints,
                                const JointTransforms& posture);
 

@@ -24,10 +24,6 @@ constexpr double kNoBone = 1e-3;
 // A limb that rests bent by more than this tells its hinge's axis.
 constexpr double kBent_rad = 10.0 * kRadiansPerDegree;
 
-double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 // The frame whose x is along a direction and whose y is nearest to another one.
 Mat3 frame(const Vec3& along, const Vec3& second) {
   Mat3 R;
@@ -189,7 +185,8 @@ void snap_to_joint_axes(Index j, Mat3& R_joint_standard) {
   Vec3 along = nearest_axis(R_joint_bone.col(0));
   const Vec3 second = nearest_axis(R_joint_bone.col(1));
   const bool is_limb = std::find(kLimbs.begin(), kLimbs.end() - 2, j) != kLimbs.end() - 2;
-  if (is_limb && angle_between(along, R_joint_bone.col(0)) > kAlong_rad) along = R_joint_bone.col(0);
+  if (is_limb && angle_between(along, R_joint_bone.col(0)) > kAlong_rad)
+    along = R_joint_bone.col(0);
   if (along.cross(second).norm() < 0.5) return;
   const Mat3 snapped = frame(along, second);
   if (Eigen::AngleAxisd(snapped.transpose() * R_joint_bone).angle() > kNearest_rad) return;
@@ -234,7 +231,8 @@ void match_rest(const Skeleton& source, const RestPosture& rest, HumanoidMapping
   const StandardPoints points = standard_points(source, mapping.source, rest.transforms);
   std::optional<StandardRotations> shared;
   if (rest.is_at_zero) shared = shared_rest(points);
-  const StandardRotations R_world_standard = shared ? *shared : RestMatcher(points, rest.hinges).match();
+  const StandardRotations R_world_standard =
+      shared ? *shared : RestMatcher(points, rest.hinges).match();
   mapping.carriers = find_carriers(source, mapping.source, points, rest.transforms);
   for (std::size_t j = 0; j < kNumStandardJoints; ++j) {
     for (auto& carrier : mapping.carriers[j]) {

@@ -65,13 +65,12 @@ class Transfer {
       // Bodies differ in how their limbs lie in the rest pose, which is not meant as movement.
       for (const auto j : {upper, lower})
         for (auto& carrier : carriers_[j])
-          carrier.R_joint_standard *=
-              smallest_rotation(standard.joint(j).bone, mapping.bones[j]);
+          carrier.R_joint_standard *= smallest_rotation(standard.joint(j).bone, mapping.bones[j]);
     }
     scale_ = mapping.unit_scale * leg_length_m(bones_of(standard)) / leg_length_m(mapping.bones);
-    root_from_hips_ = 0.5 * (scale_ / mapping.unit_scale *
-                                 (mapping.bones[lhipjoint] + mapping.bones[rhipjoint]) -
-                             (standard.joint(lhipjoint).bone + standard.joint(rhipjoint).bone));
+    root_from_hips_ =
+        0.5 * (scale_ / mapping.unit_scale * (mapping.bones[lhipjoint] + mapping.bones[rhipjoint]) -
+               (standard.joint(lhipjoint).bone + standard.joint(rhipjoint).bone));
   }
 
   void add(const JointTransforms& source, Motion& out) {

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "formats/format_test_support.hpp"
-#include "motion/humanoid_test_support.hpp"
 #include "motion/synthetic_body.hpp"
 #include "sparse_mocap/motion/heading.hpp"
+#include "sparse_mocap/motion/humanoid_errors.hpp"
 #include "sparse_mocap/motion/humanoid_file.hpp"
 
 namespace sparse_mocap {
@@ -64,11 +64,10 @@ TEST(HumanoidMapping, KeepsLimbsPointingWhereTheyDid) {
   for (const auto rest : {testing::t_pose, testing::a_pose, testing::lying, testing::along_x}) {
     const Motion motion = walk(rest);
     const HumanoidMapping mapping = map_humanoid(motion);
-    
     const Motion out = to_standard(motion, mapping, make_standard_skeleton(mapping.bones));
-    const auto errors = testing::direction_errors(motion, mapping, out);
-    EXPECT_LT(errors.mean_deg, 0.5);
-    EXPECT_LT(errors.worst_deg, 3.0);
+    const auto errors = limb_errors(motion, mapping, out);
+    EXPECT_LT(errors.overall_mean_rad(), 0.5 * kRadiansPerDegree);
+    EXPECT_LT(errors.overall_worst_rad(), 3.0 * kRadiansPerDegree);
   }
 }
 

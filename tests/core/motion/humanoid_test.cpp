@@ -109,7 +109,9 @@ TEST(MapHumanoid, TellsATPoseFromAnAPose) {
   for (const auto j : {lhumerus, lradius, lwrist}) joints[j].bone = lowered * joints[j].bone;
   const auto mapping = map_humanoid(Skeleton(joints));
   for (const auto j : {lhumerus, lradius, lwrist}) {
-    EXPECT_LT((mapping.carriers[j].front().R_joint_standard * template_bones()[j] - joints[j].bone).norm(), 1e-9);
+    EXPECT_LT((mapping.carriers[j].front().R_joint_standard * template_bones()[j] - joints[j].bone)
+                  .norm(),
+              1e-9);
     EXPECT_LT((mapping.bones[j] - template_bones()[j]).norm(), 1e-9);
   }
   const Vec3& other = template_bones()[rhumerus];

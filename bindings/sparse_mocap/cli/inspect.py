@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``sparse-mocap inspect``: what motion files hold."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from rich.table import Table
+
+from .. import (
+    find_motion_files,
+    forget_mapping,
+    read_mapping,
+    remember_mapping,
+    write_mapping,
+)
+from ..inspection import Inspection, inspect_motion
+from .console import print_table, progress_bar, write_json
+from .faults import Fault
+from .options import FilePath
+
+
+@click.command("inspect")
+@click.argument("sources", metavar="SOURCE...", type=FilePath, nargs=-1, required=True)
+@click.option(
+    "--mapping", "mapping_path", metavar="MAP.json", type=FilePath,
+    help="Takes these joints for the body's instead of finding them.",
+)  # fmt: skip
+@click.option(
+    "--save-mapping", metavar="MAP.json", type=FilePath,
+    help="Writes which joint was taken for which: to be edited, and given with --mapping.",
+)  # fmt: skip
+@click.option("--remember", is_flag=True, help="Uses --mapping for all such skeletons from now on.")
+@click.option("--forget", is_flag=True, help="Forgets what is remembered for such skeletons.")
+@click.option("--json", "json_path", type=FilePath, help="Also writes everything as JSON.")
+@click.option(
+    "--plot", type=FilePath,
+    help="Also draws six frames of each file, its own skeleton beside the mapped one (.png).",
+)  # fmt: skip
+def inspect(
+    sources: tuple[Path, ...],
+    mapping_path: Path | None,
+    save_mapping: Path | None,
+    remember: bool,
+    forget: bool,
+    json_path: Path | None,
+    plot: Path | None,
+) -> None:
+    """Shows what motion files hold and how their bodies are found.
+
+    SOURCE is a .bvh or .amc file, or a folder, which is searched recursively. The error is the
+    angle between a limb of the file and the same limb of the standard skeleton.
+    """
+    if remember and mapping_path is None:
+        raise click.UsageError("--remember needs --mapping")
+    by_hand = read_mapping(mapping_path) if mapping_path else None
+    files = [Path(path) for path in find_motion_files(list(sources))]
+    if save_mapping and len(files) != 1:
+        raise click.UsageError(f"--save-mapping needs one motion file, got {len(files)}")
+    inspections = []
+    with progress_bar("Reading") as progress:
+        for done, path in enumerate(files):
+            if not progress(done, len(files), path.name):
+                raise click.Abort
+            inspections.append(_inspect(path, by_hand, forget))
+    if json_path:
+        write_json(json_path, [inspection.described() for inspection in inspections])
+    if plot:
+        from ..plots_motion import plot_inspections
+
+        plot_inspections(inspections, plot)
+    print_table(_table(inspections))
+    if len(inspections) == 1:
+        _show_one(inspections[0])
+        _keep(inspections[0], save_mapping, remember)
+    elif remember:
+        for inspection in inspections:
+            _keep(inspection, None, remember)
+
+
+def _inspect(path: Path, by_hand: dict[str, str] | None, forget: bool) -> Inspection:
+    inspection = inspect_motion(path, by_hand)
+    if forget and inspection.motion and forget_mapping(inspection.motion.skeleton):
+        inspection = inspect_motion(path, by_hand)
+    return inspection
+
+
+def _table(inspections: list[Inspection]) -> Table:
+    table = Table("file", "joints", "frames", "Hz", "found by", "mean °", "worst °", "notes")
+    for inspection in inspections:
+        motion = inspection.motion
+        has_mapping = inspection.mapping is not None
+        table.add_row(
+            f"{inspection.path.parent.name}/{inspection.path.name}",
+            str(len(motion.skeleton.names)) if motion else "-",
+            str(motion.num_frames) if motion else "-",
+            f"{1.0 / motion.frame_time_s:.4g}" if motion else "-",
+            inspection.found_by,
+            f"{inspection.mean_error_deg:.2f}" if has_mapping else "-",
+            f"{inspection.worst_error_deg:.1f}" if has_mapping else "-",
+            f"refused: {inspection.refusal}" if inspection.refusal else _notes(inspection),
+        )
+    return table
+
+
+def _notes(inspection: Inspection) -> str:
+    return "; ".join(" ".join(warning.split()) for warning in inspection.warnings)
+
+
+def _show_one(inspection: Inspection) -> None:
+    if inspection.mapping is None:
+        raise Fault(f"{inspection.path}: {inspection.refusal}")
+    for standard, joint in inspection.mapping.joints.items():
+        mean, worst = inspection.limb_errors_deg.get(standard, (None, None))
+        error = "" if mean is None else f"  mean {mean:.2f}°, worst {worst:.1f}°"
+        click.echo(f"{standard:<10} {joint}{error}")
+
+
+def _keep(inspection: Inspection, save_mapping: Path | None, remember: bool) -> None:
+    if inspection.mapping is None or inspection.motion is None:
+        return
+    joints = inspection.mapping.joints
+    if save_mapping:
+        write_mapping(save_mapping, joints)
+        click.echo(f"{save_mapping}: {len(joints)} joints")
+    if remember:
+        click.echo(f"remembered in {remember_mapping(inspection.motion.skeleton, joints)}")
