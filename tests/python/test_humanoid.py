@@ -163,8 +163,10 @@ def test_a_rest_pose_is_matched_alike_in_every_clip(real_data: Path, tmp_path: P
             bones.append(standard.skeleton.bones)
             if len(bones) == 5:
                 break
+    limbs = [standard.skeleton.names.index(end) for _, end in STANDARD_LIMBS.values()]
     for other in bones[1:]:
-        np.testing.assert_allclose(other, bones[0], atol=5e-3)
+        np.testing.assert_allclose(other[limbs], bones[0][limbs], atol=1e-4)
+        np.testing.assert_allclose(other, bones[0], atol=2e-2)
 
 
 @pytest.fixture
