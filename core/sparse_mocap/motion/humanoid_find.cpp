@@ -195,7 +195,10 @@ SourceJoints find_source_joints(const Skeleton& source, const JointTransforms& p
     joint_of(parts, BodyPart::head, Side::middle) = given;
   const PartJoints named = parts;
   find_parts_by_shape(source, posture, parts);
-  found.is_by_names = parts == named;
+  found.is_by_names = std::all_of(kLimbs.begin(), kLimbs.end(), [&](const Limb& limb) {
+    const auto part = static_cast<std::size_t>(limb.part);
+    return parts[part] == named[part];
+  });
   require(parts, source.num_joints());
   for (const auto& limb : kLimbs)
     for (const Side side : kSides)

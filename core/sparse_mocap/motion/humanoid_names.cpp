@@ -20,15 +20,16 @@ constexpr std::array<PartNames, kNumBodyParts> kPartNames{{
     {BodyPart::thigh, "upleg upperleg upperleg01 thigh uleg hip leg femur"},
     {BodyPart::shank, "lowleg loleg lowerleg lowerleg01 shin calf knee leg tibia"},
     {BodyPart::foot, "foot ankle"},
-    {BodyPart::upper_arm, "uparm upperarm upperarm01 shldr arm shoulder humerus"},
-    {BodyPart::forearm, "forearm lowarm loarm lowerarm lowerarm01 elbow radius"},
+    {BodyPart::upper_arm, "uparm upperarm upperarm01 uarm shldr arm bicep shoulder humerus"},
+    {BodyPart::forearm, "forearm lowarm loarm lowerarm lowerarm01 farm elbow radius"},
     {BodyPart::hand, "wrist hand"},
     {BodyPart::head, "head skull"},
 }};
 
 // Words that exporters add to every name.
 constexpr std::string_view kNoise =
-    " jnt joint bone bip bip01 bip001 def org fk rig mixamorig character1 valvebiped b bn j ";
+    " jnt joint bone bip bip01 bip001 def org fk rig mixamorig character1 valve biped cc base bend "
+    "stretch b bn c j m x ";
 
 bool is_noise(const std::string& word) {
   return kNoise.find(" " + word + " ") != std::string_view::npos;

@@ -121,7 +121,8 @@ void find_head(const Skeleton& source, const ShapeFinder& finder, const Pair& ar
 
 void find_parts_by_shape(const Skeleton& source, const JointTransforms& posture,
                          PartJoints& parts) {
-  if (!is_unknown(parts, BodyPart::thigh) && !is_unknown(parts, BodyPart::shank) &&
+  const bool is_headless = joint_of(parts, BodyPart::head, Side::middle) < 0;
+  if (!is_headless && !is_unknown(parts, BodyPart::thigh) && !is_unknown(parts, BodyPart::shank) &&
       !is_unknown(parts, BodyPart::upper_arm) && !is_unknown(parts, BodyPart::forearm))
     return;
   const ShapeFinder finder(source, posture);
@@ -145,8 +146,7 @@ void find_parts_by_shape(const Skeleton& source, const JointTransforms& posture,
   };
   fill(legs, {BodyPart::thigh, BodyPart::shank, BodyPart::foot});
   fill(*arms, {BodyPart::upper_arm, BodyPart::forearm, BodyPart::hand});
-  if (joint_of(parts, BodyPart::head, Side::middle) < 0)
-    find_head(source, finder, *arms, up, parts);
+  if (is_headless) find_head(source, finder, *arms, up, parts);
 }
 
 }  // namespace sparse_mocap

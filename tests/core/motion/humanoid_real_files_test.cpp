@@ -40,7 +40,7 @@ TEST(HumanoidRealFiles, EveryExporterKeepsItsLimbDirections) {
     HumanoidMapping mapping;
     ASSERT_NO_THROW(mapping = map_humanoid(motion)) << entry.path();
     const auto errors = limb_errors(motion, mapping, mapped(motion, mapping));
-    EXPECT_LT(errors.overall_mean_rad(), 1.0 * kRadiansPerDegree) << entry.path();
+    EXPECT_LT(errors.overall_mean_rad(), 1.5 * kRadiansPerDegree) << entry.path();
     ++count;
   }
   EXPECT_GT(count, 0);
