@@ -3,6 +3,8 @@
 // Mapping synthetic bodies: rest poses, names, shapes, refusals, mappings by hand.
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "formats/format_test_support.hpp"
 #include "motion/synthetic_body.hpp"
 #include "sparse_mocap/motion/heading.hpp"
@@ -199,6 +201,43 @@ TEST(HumanoidMapping, TakesAMappingByHand) {
   EXPECT_EQ(mapping.source.standard[standard_joint::lfemur], 16);
   EXPECT_TRUE(contains(refusal_of(motion, {{"lfemor", "bone16"}}), "nearest is 'lfemur'"));
   EXPECT_TRUE(contains(refusal_of(motion, {{"lfemur", "bonee16"}}), "nearest is 'bone16'"));
+}
+
+// Bodies with joints pulled together, torn apart or renamed: refused, or mapped to finite motions.
+TEST(HumanoidMapping, NeverMakesNonsenseOfOddBodies) {
+  std::mt19937 random(7);
+  const auto pick = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  int num_mapped = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    auto body = testing::person();
+    const int size = static_cast<int>(body.size());
+    for (int change = pick(6); change >= 0; --change) {
+      auto& part = body[static_cast<std::size_t>(1 + pick(size - 1))];
+      const auto& parent = body[static_cast<std::size_t>(part.parent)];
+      const int kind = pick(3);
+      if (kind == 0) part.position = parent.position;
+      if (kind == 1) part.position += 0.3 * Vec3::Random();
+      if (kind == 2) part.name = body[static_cast<std::size_t>(pick(size))].name;
+    }
+    Motion motion;
+    try {
+      motion = trimmed(walk(trial % 2 == 0 ? testing::t_pose : testing::along_x, body), 0, 5);
+    } catch (const std::invalid_argument&) {
+      continue;  // two joints of one name are no skeleton
+    }
+    HumanoidMapping mapping;
+    try {
+      mapping = map_humanoid(motion);
+    } catch (const MappingError&) {
+      continue;
+    }
+    ++num_mapped;
+    const Motion out = to_standard(motion, mapping, make_standard_skeleton(template_bones()));
+    for (const auto& bone : mapping.bones) EXPECT_TRUE(bone.allFinite()) << trial;
+    for (const auto& position : out.root_positions) EXPECT_TRUE(position.allFinite()) << trial;
+    for (const auto& rotation : out.rotations) EXPECT_NEAR(rotation.norm(), 1.0, 1e-9) << trial;
+  }
+  EXPECT_GT(num_mapped, 50);
 }
 
 TEST(MappingFile, SurvivesARoundTripAndSaysWhatIsWrong) {
