@@ -149,10 +149,11 @@ JointTransforms Motion::transforms(int frame) const {
     forward_kinematics(skeleton, root_positions[f], R_joint, out);
     return out;
   }
-  std::vector<Joint> joints = skeleton.joints();
+  std::vector<Vec3> offsets;
+  for (const auto& joint : skeleton.joints()) offsets.push_back(joint.offset_parent);
   for (const auto& track : offset_tracks)
-    joints[static_cast<std::size_t>(track.joint)].offset_parent = track.offset_parent[f];
-  forward_kinematics(Skeleton(std::move(joints)), root_positions[f], R_joint, out);
+    offsets[static_cast<std::size_t>(track.joint)] = track.offset_parent[f];
+  forward_kinematics(skeleton, offsets, root_positions[f], R_joint, out);
   return out;
 }
 

@@ -150,6 +150,14 @@ void unwind_pose(const Skeleton& skeleton, const Eigen::VectorXd& reference,
 
 void forward_kinematics(const Skeleton& skeleton, const Vec3& position_root,
                         const std::vector<Mat3>& R_joint, JointTransforms& out) {
+  std::vector<Vec3> offsets;
+  for (const auto& joint : skeleton.joints()) offsets.push_back(joint.offset_parent);
+  forward_kinematics(skeleton, offsets, position_root, R_joint, out);
+}
+
+void forward_kinematics(const Skeleton& skeleton, const std::vector<Vec3>& offset_parent,
+                        const Vec3& position_root, const std::vector<Mat3>& R_joint,
+                        JointTransforms& out) {
   const auto n = static_cast<std::size_t>(skeleton.num_joints());
   out.R_world_joint.resize(n);
   out.pivot.resize(n);
@@ -161,7 +169,7 @@ void forward_kinematics(const Skeleton& skeleton, const Vec3& position_root,
       out.R_world_joint[j] = R_joint[j];
     } else {
       const auto p = static_cast<std::size_t>(joint.parent);
-      out.pivot[j] = out.end[p] + out.R_world_joint[p] * joint.offset_parent;
+      out.pivot[j] = out.end[p] + out.R_world_joint[p] * offset_parent[j];
       out.R_world_joint[j] = out.R_world_joint[p] * R_joint[j];
     }
     out.end[j] = out.pivot[j] + out.R_world_joint[j] * joint.bone;

@@ -79,6 +79,11 @@ void unwind_pose(const Skeleton& skeleton, const Eigen::VectorXd& reference,
 void forward_kinematics(const Skeleton& skeleton, const Vec3& position_root,
                         const std::vector<Mat3>& R_joint, JointTransforms& out);
 
+// As above with other offsets than the skeleton's own, one a joint: some files move them.
+void forward_kinematics(const Skeleton& skeleton, const std::vector<Vec3>& offset_parent,
+                        const Vec3& position_root, const std::vector<Mat3>& R_joint,
+                        JointTransforms& out);
+
 // Forward kinematics of a pose vector (rad, all joints' angles one after another).
 void forward_kinematics(const Skeleton& skeleton, const Vec3& position_root,
                         const Eigen::VectorXd& angles, JointTransforms& out);
