@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string_view>
 #include <utility>
@@ -10,24 +11,46 @@
 
 namespace sparse_mocap {
 
+// How far a long operation is.
+struct ProgressReport {
+  std::size_t done = 0;  // steps, of total
+  std::size_t total = 0;
+  std::string_view what;  // is being worked on
+  // Of operations that read many files: how many of them are through in this pass, the frames that
+  // those hold, and the bytes read of those to be read in all passes.
+  std::size_t files = 0;
+  std::size_t num_files = 0;
+  std::uint64_t frames = 0;
+  std::uint64_t bytes = 0;
+  std::uint64_t num_bytes = 0;
+};
+
 // Reports how far a long operation is and asks whether to go on.
 //
-// The callback receives (done, total, what is being worked on) and returns false to cancel. It may
-// be called from the thread that runs the operation only.
+// The callback returns false to cancel. It is called from the thread that called the operation
+// only.
 class Progress {
  public:
   using Callback = std::function<bool(std::size_t done, std::size_t total, std::string_view what)>;
+  using ReportCallback = std::function<bool(const ProgressReport&)>;
 
   Progress() = default;
-  explicit Progress(Callback callback) : callback_(std::move(callback)) {}
+  explicit Progress(ReportCallback callback) : callback_(std::move(callback)) {}
+  explicit Progress(Callback callback)
+      : callback_([simple = std::move(callback)](const ProgressReport& report) {
+          return simple(report.done, report.total, report.what);
+        }) {}
 
   // Throws Cancelled when the callback asks to stop.
+  void report(const ProgressReport& report) const {
+    if (callback_ && !callback_(report)) throw Cancelled();
+  }
   void report(std::size_t done, std::size_t total, std::string_view what) const {
-    if (callback_ && !callback_(done, total, what)) throw Cancelled();
+    report(ProgressReport{done, total, what});
   }
 
  private:
-  Callback callback_;
+  ReportCallback callback_;
 };
 
 }  // namespace sparse_mocap
