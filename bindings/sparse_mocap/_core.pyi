@@ -157,12 +157,36 @@ class Clip:
     actor: str
     motion_class: str
     source: str
+    """The file, relative to the folder that the database was built from."""
     source_hash: str
+    """XXH3 of the file."""
+    skeleton_hash: str
+    """XXH3 of the .asf that was read with it; empty for other formats."""
+    skeleton: str
+    """The id of its SourceSkeleton."""
+    origin: str
+    """A note on where the recording comes from."""
+    license: str
+    """A note on the terms of its use."""
+    source_frames: int
+    source_rate_hz: float
+    warnings: dict[str, int]
+    """Kinds of warnings about the file, and how often; empty for copies."""
     is_mirrored: bool
     is_reversed: bool
     tempo: float
     begin: int
     end: int
+
+class SourceSkeleton:
+    """One kind of skeleton among a database's sources."""
+
+    id: str
+    num_joints: int
+    joints: dict[str, str]
+    """Standard joints, and the source's joint that moves each."""
+    unit_scale: float
+    """The file's lengths as read times this are metres."""
 
 class MotionDatabase:
     """An opened .smdb, read-only and thread-safe."""
@@ -178,6 +202,14 @@ class MotionDatabase:
     def skeleton(self) -> Skeleton: ...
     @property
     def clips(self) -> list[Clip]: ...
+    @property
+    def skeletons(self) -> list[SourceSkeleton]: ...
+    @property
+    def skipped(self) -> list[tuple[str, str]]:
+        """Files that could not be used: (source, reason)."""
+    @property
+    def duplicates(self) -> list[tuple[str, str]]:
+        """Files whose motion is there already: (source, reason)."""
     @property
     def site_names(self) -> list[str]: ...
     @property
@@ -198,11 +230,39 @@ def find_motion_files(sources: Sequence[Path], exclude: Sequence[str] = ()) -> l
     Raises FormatError when a source does not exist or nothing is left.
     """
 
+class ProgressReport:
+    """How far an import is: done of total steps, and what its files held so far."""
+
+    done: int
+    total: int
+    what: str
+    files: int
+    """Of num_files, through in this pass over the files; an import has two."""
+    num_files: int
+    frames: int
+    """Of the files through in this pass."""
+    bytes: int
+    """Read, of num_bytes to be read in all passes."""
+    num_bytes: int
+
 class BuildReport:
     num_files: int
+    """Taken in by this call."""
+    num_known: int
+    """In the database already, not read again."""
+    num_replaced: int
+    """Of num_files: took the place of what the file held before."""
     num_clips: int
+    """Of the database written."""
     num_frames: int
+    source_frames: int
+    """Of the files taken in."""
+    source_bytes: int
+    elapsed_s: float
     skipped: list[tuple[str, str]]
+    """Files that cannot be used: (path, reason)."""
+    duplicates: list[tuple[str, str]]
+    """Files whose motion is there already: (path, reason)."""
     warnings: list[str]
 
 def build_database(
@@ -215,8 +275,39 @@ def build_database(
     tempo_copies: Sequence[float] = (0.8, 1.25),
     exclude: Sequence[str] = (),
     strict: bool = False,
+    keep_duplicates: bool = False,
+    num_threads: int = 0,
+    metadata: Path | None = None,
     progress: ProgressCallback | None = None,
-) -> BuildReport: ...
+    details: Callable[[ProgressReport], object] | None = None,
+) -> BuildReport:
+    """Builds a database from motion files and folders of them.
+
+    num_threads: 0 is one a processor; the file is the same. metadata: a table file,actor,class,
+    source,license; None takes metadata.csv of the source folders. details hears each report before
+    progress does.
+    """
+
+def add_to_database(
+    database: Path,
+    sources: Sequence[Path],
+    output: Path | None = None,
+    *,
+    exclude: Sequence[str] = (),
+    strict: bool = False,
+    keep_duplicates: bool = False,
+    num_threads: int = 0,
+    metadata: Path | None = None,
+    progress: ProgressCallback | None = None,
+    details: Callable[[ProgressReport], object] | None = None,
+) -> BuildReport:
+    """Adds motion files on the database's skeleton, at its rate, with its kinds of copies.
+
+    Replaces the database (atomically) when output is None. Files that are in are not read again.
+    """
+
+def drop_from_database(database: Path, clips: Sequence[str], output: Path | None = None) -> int:
+    """Drops clips by glob patterns on name or source, and tells how many. Raises FormatError."""
 
 class PoseEstimate:
     """One reconstructed frame."""

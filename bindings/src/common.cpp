@@ -32,21 +32,16 @@ py::array_t<double> new_array(const std::vector<py::ssize_t>& shape) {
   return py::array_t<double>(shape);
 }
 
-Progress progress_from(const std::optional<py::function>& callback) {
-  if (!callback) {
-    return Progress([](std::size_t, std::size_t, std::string_view) {
-      const py::gil_scoped_acquire gil;
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-      return true;
-    });
-  }
-  return Progress(
-      [function = *callback](std::size_t done, std::size_t total, std::string_view what) {
-        const py::gil_scoped_acquire gil;
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        const py::object answer = function(done, total, std::string(what));
-        return answer.is_none() || answer.cast<bool>();
-      });
+Progress progress_from(const std::optional<py::function>& callback,
+                       const std::optional<py::function>& details) {
+  return Progress([callback, details](const ProgressReport& report) {
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (details) (*details)(report);
+    if (!callback) return true;
+    const py::object answer = (*callback)(report.done, report.total, std::string(report.what));
+    return answer.is_none() || answer.cast<bool>();
+  });
 }
 
 std::vector<Reading> readings_from(const Doubles& specific_force, std::size_t num_sensors) {

@@ -24,6 +24,7 @@ void bind_motion(py::module_& m);
 void bind_humanoid(py::module_& m);
 void bind_sensors(py::module_& m);
 void bind_database(py::module_& m);
+void bind_database_import(py::module_& m);
 void bind_reconstruction(py::module_& m);
 
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -35,8 +36,10 @@ void require_shape(const Doubles& array, const std::vector<py::ssize_t>& expecte
 // A new array of this shape.
 py::array_t<double> new_array(const std::vector<py::ssize_t>& shape);
 
-// Calls back into Python with the GIL; None goes on, False cancels.
-Progress progress_from(const std::optional<py::function>& callback);
+// Calls back into Python with the GIL; None goes on, False cancels. details gets the whole report,
+// before callback is called.
+Progress progress_from(const std::optional<py::function>& callback,
+                       const std::optional<py::function>& details = std::nullopt);
 
 // Readings (T, S, 3) as the core takes them.
 std::vector<Reading> readings_from(const Doubles& specific_force, std::size_t num_sensors);

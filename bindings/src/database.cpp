@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common.hpp"
-#include "sparse_mocap/database/builder.hpp"
 #include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 
@@ -56,31 +55,34 @@ Motion clip_motion(const MotionDatabase& database, int index) {
   return to_motion(estimates, database.skeleton(), database.rate_hz());
 }
 
-BuildReport build(const std::vector<std::filesystem::path>& sources,
-                  const std::filesystem::path& output, double rate_hz, bool mirror, bool reverse,
-                  const std::vector<double>& tempo_copies, const std::vector<std::string>& exclude,
-                  bool strict, const std::optional<py::function>& callback) {
-  BuildOptions options;
-  options.rate_hz = rate_hz;
-  options.add_mirrored = mirror;
-  options.add_reversed = reverse;
-  options.tempo_copies = tempo_copies;
-  options.exclude = exclude;
-  options.is_strict = strict;
-  const Progress progress = progress_from(callback);
-  const py::gil_scoped_release release;
-  return build_database(sources, output, options, progress);
+std::vector<std::pair<std::string, std::string>> pairs_of(const std::vector<LeftOut>& files) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const auto& file : files) pairs.emplace_back(file.source, file.reason);
+  return pairs;
 }
 
 }  // namespace
 
 void bind_database(py::module_& m) {
+  py::class_<SourceSkeleton>(m, "SourceSkeleton")
+      .def_readonly("id", &SourceSkeleton::id)
+      .def_readonly("num_joints", &SourceSkeleton::num_joints)
+      .def_readonly("joints", &SourceSkeleton::joints)
+      .def_readonly("unit_scale", &SourceSkeleton::unit_scale);
+
   py::class_<Clip>(m, "Clip")
       .def_readonly("name", &Clip::name)
       .def_readonly("actor", &Clip::actor)
       .def_readonly("motion_class", &Clip::motion_class)
       .def_readonly("source", &Clip::source)
       .def_readonly("source_hash", &Clip::source_hash)
+      .def_readonly("skeleton_hash", &Clip::skeleton_hash)
+      .def_readonly("skeleton", &Clip::skeleton)
+      .def_readonly("origin", &Clip::origin)
+      .def_readonly("license", &Clip::license)
+      .def_readonly("source_frames", &Clip::source_frames)
+      .def_readonly("source_rate_hz", &Clip::source_rate_hz)
+      .def_readonly("warnings", &Clip::warnings)
       .def_readonly("is_mirrored", &Clip::is_mirrored)
       .def_readonly("is_reversed", &Clip::is_reversed)
       .def_readonly("tempo", &Clip::tempo)
@@ -98,6 +100,12 @@ void bind_database(py::module_& m) {
       .def_property_readonly("rate_hz", &MotionDatabase::rate_hz)
       .def_property_readonly("skeleton", [](const MotionDatabase& d) { return d.skeleton(); })
       .def_property_readonly("clips", [](const MotionDatabase& d) { return d.clips(); })
+      .def_property_readonly("skeletons",
+                             [](const MotionDatabase& d) { return d.sources().skeletons; })
+      .def_property_readonly("skipped",
+                             [](const MotionDatabase& d) { return pairs_of(d.sources().skipped); })
+      .def_property_readonly(
+          "duplicates", [](const MotionDatabase& d) { return pairs_of(d.sources().duplicates); })
       .def_property_readonly("site_names", &MotionDatabase::site_names)
       .def_property_readonly("build_info", &MotionDatabase::build_info)
       .def(
@@ -107,27 +115,6 @@ void bind_database(py::module_& m) {
           },
           py::arg("name"))
       .def("clip_motion", &clip_motion, py::arg("index"));
-
-  py::class_<BuildReport>(m, "BuildReport")
-      .def_readonly("num_files", &BuildReport::num_files)
-      .def_readonly("num_clips", &BuildReport::num_clips)
-      .def_readonly("num_frames", &BuildReport::num_frames)
-      .def_property_readonly("skipped",
-                             [](const BuildReport& report) {
-                               std::vector<std::pair<std::string, std::string>> skipped;
-                               for (const auto& file : report.skipped)
-                                 skipped.emplace_back(file.path.string(), file.reason);
-                               return skipped;
-                             })
-      .def_readonly("warnings", &BuildReport::warnings);
-
-  m.def("find_motion_files", &find_motion_files, py::arg("sources"),
-        py::arg("exclude") = std::vector<std::string>(), py::call_guard<py::gil_scoped_release>());
-  m.def("build_database", &build, py::arg("sources"), py::arg("output"), py::kw_only(),
-        py::arg("rate_hz") = 25.0, py::arg("mirror") = false, py::arg("reverse") = false,
-        py::arg("tempo_copies") = BuildOptions().tempo_copies,
-        py::arg("exclude") = std::vector<std::string>{}, py::arg("strict") = false,
-        py::arg("progress") = py::none());
 }
 
 }  // namespace sparse_mocap::python

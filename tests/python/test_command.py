@@ -146,14 +146,14 @@ STOPPED_BUILD = """
 import os, signal, sys
 from sparse_mocap.cli import console, main
 
-real = console.progress_bar
+real = console.import_bar
 
 def interrupting(label):
     class Bar:
         def __enter__(self):
             self.bar = real(label)
-            self.callback = self.bar.__enter__()
-            return self.call
+            self.callback, details = self.bar.__enter__()
+            return self.call, details
         def call(self, done, total, what):
             if done == 3:
                 os.kill(os.getpid(), signal.SIGINT)
@@ -162,7 +162,7 @@ def interrupting(label):
             return self.bar.__exit__(*error)
     return Bar()
 
-console.progress_bar = interrupting
+console.import_bar = interrupting
 sys.exit(main(sys.argv[1:]))
 """
 

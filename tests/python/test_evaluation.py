@@ -106,14 +106,16 @@ def test_values_are_interpolated_linearly() -> None:
 
 
 def test_a_source_is_found_unless_it_is_unclear(tmp_path: Path) -> None:
-    (tmp_path / "sub").mkdir()
-    for name in ("a.bvh", "sub/a.bvh", "sub/B.BVH", "x.asf"):
+    (tmp_path / "sub" / "sub").mkdir(parents=True)
+    for name in ("a.bvh", "sub/a.bvh", "sub/B.BVH", "sub/sub/c.bvh", "sub/c.bvh", "x.asf"):
         (tmp_path / name).touch()
     files = motion_files(tmp_path)
     clip = fake_clips()[0]
     clip.source = "B.BVH"
     assert source_path(files, clip) == tmp_path / "sub" / "B.BVH"
-    for clip.source in ("a.bvh", "gone.bvh"):
+    for clip.source in ("a.bvh", "sub/a.bvh"):
+        assert source_path(files, clip) == tmp_path / clip.source
+    for clip.source in ("c.bvh", "gone.bvh", "gone/a.bvh"):
         with pytest.raises(FormatError, match=clip.source):
             source_path(files, clip)
 

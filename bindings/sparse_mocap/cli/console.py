@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -23,9 +24,11 @@ from rich.progress import (
 )
 from rich.table import Table
 
+from .. import ProgressReport
 from ..files import write_text
 
 ProgressCallback = Callable[[int, int, str], bool]
+DetailsCallback = Callable[[ProgressReport], None]
 
 _MOST_WARNINGS = 10
 
@@ -52,6 +55,45 @@ def progress_bar(label: str) -> Iterator[ProgressCallback]:
             return not interrupted.is_set()
 
         yield callback
+
+
+@contextmanager
+def import_bar(label: str) -> Iterator[tuple[ProgressCallback, DetailsCallback]]:
+    """As progress_bar, for imports: shows files, frames, MB/s and the time left.
+
+    Gives the callbacks ``progress`` and ``details``.
+    """
+    console = Console(stderr=True)
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.fields[figures]}"),
+        TimeRemainingColumn(),
+        TextColumn("{task.fields[what]}"),
+        console=console,
+        disable=not console.is_terminal,
+        transient=True,
+    )
+    with _interrupted() as interrupted, bar:
+        task = bar.add_task(label, total=None, what="", figures="")
+        start = time.monotonic()
+
+        def details(report: ProgressReport) -> None:
+            bar.update(
+                task,
+                completed=report.bytes,
+                total=report.num_bytes or None,
+                figures=figures_of(report, time.monotonic() - start),
+                what=report.what[:40],
+            )
+
+        yield lambda done, total, what: not interrupted.is_set(), details
+
+
+def figures_of(report: ProgressReport, elapsed_s: float) -> str:
+    """Returns what an import's bar shows beside it: files, frames, MB/s."""
+    speed = report.bytes / 1e6 / elapsed_s if elapsed_s > 0 else 0.0
+    return f"{report.files}/{report.num_files} files, {report.frames} frames, {speed:.1f} MB/s"
 
 
 @contextmanager

@@ -4,20 +4,59 @@
 from __future__ import annotations
 
 import json
-from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import click
 
-from .. import MotionDatabase, build_database
-from .console import progress_bar, warn
+from .. import (
+    BuildReport,
+    MotionDatabase,
+    add_to_database,
+    build_database,
+    drop_from_database,
+)
+from .console import import_bar, warn
+from .database_info import described, show
 from .options import FilePath
+
+_IMPORT_OPTIONS = (
+    click.option(
+        "--exclude", metavar="GLOB", multiple=True,
+        help="Leaves out files with such a name. May be repeated.",
+    ),
+    click.option("--strict", is_flag=True, help="Stops at the first file that cannot be used."),
+    click.option(
+        "--keep-duplicates", is_flag=True,
+        help="Also takes files whose motion is there already, as from another format.",
+    ),
+    click.option(
+        "--metadata", type=FilePath,
+        help="A table file,actor,class,source,license that says what file names do not; by default"
+        " metadata.csv in the source folder.",
+    ),
+    click.option(
+        "--threads", "num_threads", type=click.IntRange(0, 1024), default=0,
+        help="How many; 0, the default, is one a processor. The database is the same.",
+    ),
+)  # fmt: skip
+
+
+def _import_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    for option in reversed(_IMPORT_OPTIONS):
+        command = option(command)
+    return command
+
+
+_output_option = click.option(
+    "-o", "--output", type=FilePath, help="Where to write it; by default in the old one's place."
+)
 
 
 @click.group()
 def database() -> None:
-    """Builds motion databases and shows what they hold."""
+    """Builds motion databases, changes them, and shows what they hold."""
 
 
 @database.command()
@@ -32,11 +71,7 @@ def database() -> None:
     "--no-tempo-copies", is_flag=True,
     help="Leaves out the copies at 0.8 and 1.25 times the tempo, which help small databases.",
 )  # fmt: skip
-@click.option(
-    "--exclude", metavar="GLOB", multiple=True,
-    help="Leaves out files with such a name. May be repeated.",
-)  # fmt: skip
-@click.option("--strict", is_flag=True, help="Stops at the first file that cannot be used.")
+@_import_options
 def build(
     sources: tuple[Path, ...],
     output: Path,
@@ -44,32 +79,61 @@ def build(
     mirror: bool,
     reverse: bool,
     no_tempo_copies: bool,
-    exclude: tuple[str, ...],
-    strict: bool,
+    **options: Any,
 ) -> None:
     """Builds a database from motion capture.
 
     SOURCE is a .bvh or .amc file, or a folder, which is searched recursively. An .amc needs its
     .asf beside it.
     """
-    with progress_bar("Building") as progress:
+    with import_bar("Building") as (progress, details):
         report = build_database(
             list(sources),
             output,
             rate_hz=fps,
             mirror=mirror,
             reverse=reverse,
-            exclude=exclude,
-            strict=strict,
             progress=progress,
+            details=details,
+            **options,
             **({"tempo_copies": ()} if no_tempo_copies else {}),
         )
-    warn([f"left out: {reason}" for _, reason in report.skipped])
-    warn(report.warnings)
+    _tell(output, report, fps)
+
+
+@database.command()
+@click.argument("path", metavar="DB.smdb", type=FilePath)
+@click.argument("sources", metavar="SOURCE...", type=FilePath, nargs=-1, required=True)
+@_output_option
+@_import_options
+def add(path: Path, sources: tuple[Path, ...], output: Path | None, **options: Any) -> None:
+    """Adds motion capture to a database.
+
+    On the database's own skeleton, at its rate and with its kinds of copies. Files that are in
+    already are not read again; one that changed since takes the place of its old clips.
+    """
+    target = output or path
+    with import_bar("Adding") as (progress, details):
+        report = add_to_database(
+            path, list(sources), target, progress=progress, details=details, **options
+        )
+    _tell(target, report, MotionDatabase(target).rate_hz)
+
+
+@database.command()
+@click.argument("path", metavar="DB.smdb", type=FilePath)
+@click.option(
+    "--clips", metavar="GLOB", multiple=True, required=True,
+    help="Drops clips with such a name or source file, and their copies. May be repeated.",
+)  # fmt: skip
+@_output_option
+def drop(path: Path, clips: tuple[str, ...], output: Path | None) -> None:
+    """Drops clips from a database."""
+    target = output or path
+    dropped = drop_from_database(path, list(clips), target)
+    left = MotionDatabase(target)
     click.echo(
-        f"{output}: {report.num_clips} clips, {report.num_frames} frames"
-        f" ({report.num_frames / fps / 60:.1f} min) from {report.num_files} files"
-        f"{f', {len(report.skipped)} left out' if report.skipped else ''}"
+        f"{target}: {dropped} clips dropped, {len(left.clips)} clips, {left.num_frames} frames left"
     )
 
 
@@ -78,67 +142,31 @@ def build(
 @click.option("--json", "as_json", is_flag=True, help="Prints everything, each clip too, as JSON.")
 def info(path: Path, as_json: bool) -> None:
     """Shows what a database holds."""
-    described = _described(MotionDatabase(path))
+    told = described(MotionDatabase(path))
     if as_json:
-        click.echo(json.dumps(described, indent=2, ensure_ascii=False))
+        click.echo(json.dumps(told, indent=2, ensure_ascii=False))
     else:
-        _show(described)
+        show(told)
 
 
-def _described(opened: MotionDatabase) -> dict[str, Any]:
-    clips = opened.clips
-    return {
-        "path": opened.path,
-        "bytes": Path(opened.path).stat().st_size,
-        "frames": opened.num_frames,
-        "rate_hz": opened.rate_hz,
-        "duration_s": opened.num_frames / opened.rate_hz,
-        "joints": list(opened.skeleton.names),
-        "sites": list(opened.site_names),
-        "num_clips": len(clips),
-        "num_mirrored": sum(clip.is_mirrored for clip in clips),
-        "num_reversed": sum(clip.is_reversed for clip in clips),
-        "num_tempo_copies": sum(clip.tempo != 1.0 for clip in clips),
-        "actors": dict(sorted(Counter(clip.actor for clip in clips).items())),
-        "motion_classes": dict(sorted(Counter(clip.motion_class for clip in clips).items())),
-        "build": json.loads(opened.build_info),
-        "clips": [
-            {
-                "name": clip.name,
-                "actor": clip.actor,
-                "motion_class": clip.motion_class,
-                "source": clip.source,
-                "source_hash": clip.source_hash,
-                "is_mirrored": clip.is_mirrored,
-                "is_reversed": clip.is_reversed,
-                "tempo": clip.tempo,
-                "begin": clip.begin,
-                "end": clip.end,
-            }
-            for clip in clips
-        ],
+def _tell(output: Path, report: BuildReport, rate_hz: float) -> None:
+    warn([f"left out: {reason}" for _, reason in report.skipped])
+    warn([f"left out: {reason}" for _, reason in report.duplicates])
+    warn(report.warnings)
+    counts = {
+        "left out": len(report.skipped),
+        "duplicates": len(report.duplicates),
+        "in already": report.num_known,
+        "replaced": report.num_replaced,
     }
-
-
-def _show(described: dict[str, Any]) -> None:
-    rows = {
-        "file": f"{described['path']}, {described['bytes'] / 1e6:.1f} MB",
-        "frames": f"{described['frames']} at {described['rate_hz']:g} Hz,"
-        f" {described['duration_s'] / 60:.1f} min",
-        "clips": f"{described['num_clips']}, of which {described['num_mirrored']} mirrored"
-        f" and {described['num_reversed']} reversed,"
-        f" {described['num_tempo_copies']} at another tempo",
-        "actors": _counted(described["actors"]),
-        "classes": _counted(described["motion_classes"]),
-        "sites": ", ".join(described["sites"]),
-        "joints": " ".join(described["joints"]),
-        "build": ", ".join(f"{key} {value}" for key, value in described["build"].items()),
-    }
-    for name, text in rows.items():
-        click.echo(f"{name:<8} {text}")
-
-
-def _counted(counts: dict[str, int]) -> str:
-    shown = [f"{name} ({count})" for name, count in list(counts.items())[:40]]
-    more = [f"and {len(counts) - 40} more"] if len(counts) > 40 else []
-    return ", ".join(shown + more)
+    more = "".join(f", {count} {what}" for what, count in counts.items() if count)
+    click.echo(
+        f"{output}: {report.num_clips} clips, {report.num_frames} frames"
+        f" ({report.num_frames / rate_hz / 60:.1f} min) from {report.num_files} files{more}"
+    )
+    if report.elapsed_s > 0 and report.num_files:
+        click.echo(
+            f"{report.source_frames} frames and {report.source_bytes / 1e6:.1f} MB of motion files"
+            f" in {report.elapsed_s:.1f} s: {report.source_frames / report.elapsed_s:.0f} frames/s,"
+            f" {report.source_bytes / 1e6 / report.elapsed_s:.1f} MB/s"
+        )

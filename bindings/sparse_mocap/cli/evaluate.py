@@ -109,9 +109,9 @@ def _database(
 
 
 def _fingerprint(source: Path) -> str:
-    files = [path for same_name in motion_files(source).values() for path in same_name]
-    files += source.rglob("*.[aA][sS][fF]")
-    files.append(Path(_core.__file__))  # another build may build another database
+    files = {path for same_name in motion_files(source).values() for path in same_name}
+    files |= set(source.rglob("*.[aA][sS][fF]"))
+    files.add(Path(_core.__file__))  # another build may build another database
     seen = [[str(path), path.stat().st_size, path.stat().st_mtime_ns] for path in sorted(files)]
     return hashlib.sha256(json.dumps(seen).encode()).hexdigest()[:12]
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from fnmatch import fnmatch
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from .. import Clip, FormatError
 from ..table_errors import TableError
@@ -19,11 +19,13 @@ SCENARIOS = {
 
 
 def motion_files(folder: str | os.PathLike[str]) -> dict[str, list[Path]]:
-    """Returns the motion files in a folder (recursively) by their names."""
+    """Returns the motion files in a folder (recursively) by their paths in it and their names."""
     files: dict[str, list[Path]] = {}
     for path in sorted(Path(folder).rglob("*")):
         if path.suffix.lower() in (".bvh", ".amc") and path.is_file():
             files.setdefault(path.name, []).append(path)
+    for path in [path for same_name in files.values() for path in same_name]:
+        files[path.relative_to(folder).as_posix()] = [path]
     return files
 
 
@@ -42,11 +44,16 @@ def choose_tests(clips: Sequence[Clip], pattern: str | None = None) -> list[int]
         key=lambda i: (clips[i].name, clips[i].source),
     )
     if pattern is not None:
-        return [i for i in originals if fnmatch(clips[i].source.lower(), pattern.lower())]
+        return [i for i in originals if _matches(clips[i].source, pattern)]
     firsts: dict[tuple[str, str], int] = {}
     for i in originals:
         firsts.setdefault((clips[i].actor, clips[i].motion_class), i)
     return list(firsts.values())
+
+
+def _matches(source: str, pattern: str) -> bool:
+    names = (source, PurePosixPath(source).name)
+    return any(fnmatch(name.lower(), pattern.lower()) for name in names)
 
 
 def excluded_clips(clips: Sequence[Clip], test: int, scenario: int) -> list[int]:

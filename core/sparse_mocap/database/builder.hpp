@@ -1,17 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "sparse_mocap/base/progress.hpp"
-#include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
 
 namespace sparse_mocap {
 
-struct BuildOptions {
+// How files get into a database.
+struct ImportOptions {
+  std::vector<std::string> exclude;  // glob patterns (* ? [..]) on file names
+  bool is_strict = false;            // stop at the first file that cannot be used
+  bool keep_duplicates = false;      // also take files whose motion is there already
+  int num_threads = 0;               // 0: one a processor; the result is the same
+  // A table of labels (see Sidecar); empty: `metadata.csv` in the source folders that have one.
+  std::filesystem::path metadata;
+  ReadOptions read;
+};
+
+struct BuildOptions : ImportOptions {
   double rate_hz = 25.0;
   bool add_mirrored = false;
   bool add_reversed = false;
@@ -20,36 +31,48 @@ struct BuildOptions {
   // make the database larger than max_frames_with_copies.
   std::vector<double> tempo_copies{0.8, 1.25};
   int max_frames_with_copies = 200'000;
-  std::vector<std::string> exclude;  // glob patterns (* ? [..]) on file names
-  bool is_strict = false;            // stop at the first file that cannot be used
-  ReadOptions read;
 };
 
 struct SkippedFile {
   std::filesystem::path path;
-  std::string reason;
+  std::string reason;  // one line, with the path
 };
 
 struct BuildReport {
-  int num_files = 0;
-  int num_clips = 0;
+  int num_files = 0;     // taken in by this call
+  int num_known = 0;     // in the database already, not read again
+  int num_replaced = 0;  // of num_files: took the place of what the file held before
+  int num_clips = 0;     // of the database written
   int num_frames = 0;
-  std::vector<SkippedFile> skipped;
+  std::uint64_t source_frames = 0;  // of the files taken in
+  std::uint64_t source_bytes = 0;
+  double elapsed_s = 0.0;
+  std::vector<SkippedFile> skipped;     // cannot be used
+  std::vector<SkippedFile> duplicates;  // hold a motion that is there already
   std::vector<std::string> warnings;
 };
 
-// Motion files in the folders (recursively) and files named, without those excluded, sorted.
-// Throws FormatError when a source does not exist or nothing is left.
-std::vector<std::filesystem::path> find_motion_files(
-    const std::vector<std::filesystem::path>& sources, const std::vector<std::string>& exclude);
-
 // Builds the knowledge base of Tautges et al. 2011, section 3, and writes it atomically to output.
-// Throws FormatError (nothing usable, or is_strict), Cancelled; output is untouched then.
+// The file depends on the sources and options alone, not on the number of threads.
+// Throws FormatError (nothing usable, or is_strict), ConfigError, Cancelled; output is untouched
+// then.
 BuildReport build_database(const std::vector<std::filesystem::path>& sources,
                            const std::filesystem::path& output, const BuildOptions& options,
                            const Progress& progress = Progress());
 
-// The rows of one clip: the motion, on a standard skeleton at its own rate, sampled at rate_hz.
-DatabaseRows database_rows(const Motion& standard_motion, double rate_hz);
+// Adds files to a database: on its own skeleton, at its own rate and with its own kinds of copies.
+// Rows that are there stay as they are; a file that is in already (by its hash) is not read; one
+// that changed since takes the place of its old clips. Errors as above.
+BuildReport add_to_database(const std::filesystem::path& database,
+                            const std::vector<std::filesystem::path>& sources,
+                            const std::filesystem::path& output, const ImportOptions& options,
+                            const Progress& progress = Progress());
+
+// Drops the clips, copies too, whose name, source or source's file name matches one of the glob
+// patterns. Gives how many were dropped. Throws FormatError when a pattern matches nothing or
+// nothing would be left; output is untouched then.
+int drop_from_database(const std::filesystem::path& database,
+                       const std::vector<std::string>& patterns,
+                       const std::filesystem::path& output);
 
 }  // namespace sparse_mocap

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-#include <cstring>
-#include <nlohmann/json.hpp>
-#include <stdexcept>
+#include "sparse_mocap/database/database_content.hpp"
 
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "sparse_mocap/base/files.hpp"
 #include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/database/safetensors.hpp"
 #include "sparse_mocap/sensors/filter.hpp"
@@ -14,6 +19,11 @@ namespace {
 using nlohmann::json;
 using Rows = DatabaseRows::Rows;
 
+// File names need not be UTF-8; what is not is replaced, so that the header is sound JSON.
+std::string dumped(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 json skeleton_json(const Skeleton& skeleton) {
@@ -23,67 +33,86 @@ json skeleton_json(const Skeleton& skeleton) {
   return joints;
 }
 
+json clip_json(const Clip& clip, int begin, int end) {
+  json entry{{"name", clip.name},
+             {"actor", clip.actor},
+             {"class", clip.motion_class},
+             {"source", clip.source},
+             {"source_hash", clip.source_hash},
+             {"mirrored", clip.is_mirrored},
+             {"reversed", clip.is_reversed},
+             {"tempo", clip.tempo},
+             {"begin", begin},
+             {"end", end},
+             {"source_frames", clip.source_frames},
+             {"source_rate_hz", clip.source_rate_hz}};
+  const auto put = [&](const char* key, const std::string& value) {
+    if (!value.empty()) entry[key] = value;
+  };
+  put("skeleton", clip.skeleton);
+  put("skeleton_hash", clip.skeleton_hash);
+  put("origin", clip.origin);
+  put("license", clip.license);
+  if (!clip.warnings.empty()) entry["warnings"] = clip.warnings;
+  return entry;
+}
+
 json clips_json(const DatabaseContent& content) {
   json clips = json::array();
   int begin = 0;
   for (std::size_t c = 0; c < content.clips.size(); ++c) {
-    const Clip& clip = content.clips[c];
     const int end = begin + content.clip_rows[c].num_frames();
-    clips.push_back({{"name", clip.name},
-                     {"actor", clip.actor},
-                     {"class", clip.motion_class},
-                     {"source", clip.source},
-                     {"source_hash", clip.source_hash},
-                     {"mirrored", clip.is_mirrored},
-                     {"reversed", clip.is_reversed},
-                     {"tempo", clip.tempo},
-                     {"begin", begin},
-                     {"end", end}});
+    clips.push_back(clip_json(content.clips[c], begin, end));
     begin = end;
   }
   return clips;
 }
 
+json left_out_json(const std::vector<LeftOut>& files) {
+  json entries = json::array();
+  for (const auto& file : files)
+    entries.push_back({{"source", file.source}, {"reason", file.reason}});
+  return entries;
+}
+
+json sources_json(const SourceRecord& sources) {
+  json skeletons = json::array();
+  for (const auto& skeleton : sources.skeletons)
+    skeletons.push_back({{"id", skeleton.id},
+                         {"num_joints", skeleton.num_joints},
+                         {"joints", skeleton.joints},
+                         {"unit_scale", skeleton.unit_scale}});
+  return {{"skeletons", skeletons},
+          {"skipped", left_out_json(sources.skipped)},
+          {"duplicates", left_out_json(sources.duplicates)}};
+}
+
+using Piece = std::span<const std::byte>;
+
+// An array of the file in pieces that lie where the content has them.
 struct Array {
-  std::string name;
-  ElementType type;
-  std::vector<std::size_t> shape;
-  std::vector<std::byte> bytes;
+  Tensor tensor;  // without its bytes
+  std::vector<Piece> pieces;
 };
 
 Array gathered(const char* name, const DatabaseContent& content, Rows DatabaseRows::*member) {
-  Array array{name, ElementType::f32, {0, 0}, {}};
+  Array array{{name, ElementType::f32, {0, 0}, {}}, {}};
   for (const auto& rows : content.clip_rows) {
     const Rows& part = rows.*member;
-    array.shape[0] += static_cast<std::size_t>(part.rows());
-    array.shape[1] = static_cast<std::size_t>(part.cols());
-    const auto bytes = std::as_bytes(std::span(part.data(), static_cast<std::size_t>(part.size())));
-    array.bytes.insert(array.bytes.end(), bytes.begin(), bytes.end());
+    array.tensor.shape[0] += static_cast<std::size_t>(part.rows());
+    array.tensor.shape[1] = static_cast<std::size_t>(part.cols());
+    array.pieces.push_back(
+        std::as_bytes(std::span(part.data(), static_cast<std::size_t>(part.size()))));
   }
   return array;
 }
 
-Array clip_indices(const DatabaseContent& content) {
+std::vector<std::int32_t> clip_indices(const DatabaseContent& content) {
   std::vector<std::int32_t> indices;
   for (std::size_t c = 0; c < content.clip_rows.size(); ++c)
     indices.insert(indices.end(), static_cast<std::size_t>(content.clip_rows[c].num_frames()),
                    static_cast<std::int32_t>(c));
-  const auto bytes = std::as_bytes(std::span(indices));
-  return {"clip_index", ElementType::i32, {indices.size(), 1}, {bytes.begin(), bytes.end()}};
-}
-
-std::vector<Array> all_arrays(const DatabaseContent& content) {
-  std::vector<Array> arrays;
-  arrays.push_back(gathered("angles", content, &DatabaseRows::angles));
-  arrays.push_back(gathered("positions", content, &DatabaseRows::positions));
-  arrays.push_back(gathered("root_motion", content, &DatabaseRows::root_motion));
-  arrays.push_back(gathered("contacts", content, &DatabaseRows::contacts));
-  arrays.push_back(gathered("specific_force_pivot", content, &DatabaseRows::specific_force_pivot));
-  arrays.push_back(gathered("specific_force_end", content, &DatabaseRows::specific_force_end));
-  arrays.push_back(gathered("angular_velocity", content, &DatabaseRows::angular_velocity));
-  arrays.push_back(gathered("up", content, &DatabaseRows::up));
-  arrays.push_back(clip_indices(content));
-  return arrays;
+  return indices;
 }
 
 std::map<std::string, std::string> metadata_of(const DatabaseContent& content,
@@ -91,7 +120,7 @@ std::map<std::string, std::string> metadata_of(const DatabaseContent& content,
   json sites = json::array();
   for (const auto& site : all_sites()) sites.push_back(std::string(site.name));
   json checksums;
-  for (const auto& array : arrays) checksums[array.name] = checksum(array.bytes);
+  for (const auto& array : arrays) checksums[array.tensor.name] = checksum(array.pieces);
   std::map<std::string, std::string> metadata{
       {"format", "sparse_mocap_database"},
       {"format_version", std::to_string(kDatabaseFormatVersion)},
@@ -102,7 +131,8 @@ std::map<std::string, std::string> metadata_of(const DatabaseContent& content,
                      .dump()},
       {"skeleton", skeleton_json(content.skeleton).dump()},
       {"sites", sites.dump()},
-      {"clips", clips_json(content).dump()},
+      {"clips", dumped(clips_json(content))},
+      {"sources", dumped(sources_json(content.sources))},
       {"build", content.build_info},
       {"checksums", checksums.dump()},
   };
@@ -110,23 +140,89 @@ std::map<std::string, std::string> metadata_of(const DatabaseContent& content,
   return metadata;
 }
 
+// A file as pieces: what they view lives in the content and here.
+class EncodedDatabase {
+ public:
+  explicit EncodedDatabase(const DatabaseContent& content) : indices_(clip_indices(content)) {
+    if (content.clips.empty() || content.clips.size() != content.clip_rows.size())
+      throw std::invalid_argument("a database's clips and their rows do not correspond");
+    const auto arrays = all_arrays(content);
+    std::vector<Tensor> tensors;
+    for (const auto& array : arrays) tensors.push_back(array.tensor);
+    header_ = safetensors_header(metadata_of(content, arrays), tensors);
+    pieces_.push_back(std::as_bytes(std::span(header_)));
+    for (const auto& array : arrays)
+      pieces_.insert(pieces_.end(), array.pieces.begin(), array.pieces.end());
+  }
+  EncodedDatabase(const EncodedDatabase&) = delete;
+  EncodedDatabase& operator=(const EncodedDatabase&) = delete;
+
+  std::span<const Piece> pieces() const { return pieces_; }
+
+ private:
+  std::vector<Array> all_arrays(const DatabaseContent& content) const {
+    return {gathered("angles", content, &DatabaseRows::angles),
+            gathered("positions", content, &DatabaseRows::positions),
+            gathered("root_motion", content, &DatabaseRows::root_motion),
+            gathered("contacts", content, &DatabaseRows::contacts),
+            gathered("specific_force_pivot", content, &DatabaseRows::specific_force_pivot),
+            gathered("specific_force_end", content, &DatabaseRows::specific_force_end),
+            gathered("angular_velocity", content, &DatabaseRows::angular_velocity),
+            gathered("up", content, &DatabaseRows::up),
+            {{"clip_index", ElementType::i32, {indices_.size(), 1}, {}},
+             {std::as_bytes(std::span(indices_))}}};
+  }
+
+  std::vector<std::int32_t> indices_;
+  std::string header_;
+  std::vector<Piece> pieces_;
+};
+
 }  // namespace
 
+DatabaseContent database_content(const MotionDatabase& database) {
+  DatabaseContent content{database.skeleton(), database.rate_hz(),   database.clips(), {},
+                          database.sources(),  database.build_info()};
+  for (const Clip& clip : database.clips()) {
+    const auto of_clip = [&](const FloatRows& rows) {
+      return Rows(rows.middleRows(clip.begin, clip.num_frames()));
+    };
+    content.clip_rows.push_back({of_clip(database.angles()), of_clip(database.positions()),
+                                 of_clip(database.root_motion()), of_clip(database.contacts()),
+                                 of_clip(database.specific_force_pivot()),
+                                 of_clip(database.specific_force_end()),
+                                 of_clip(database.angular_velocity()), of_clip(database.up())});
+  }
+  return content;
+}
+
+void remove_clips(DatabaseContent& content,
+                  const std::function<bool(std::size_t clip)>& is_unwanted) {
+  std::vector<Clip> clips;
+  std::vector<DatabaseRows> clip_rows;
+  std::set<std::string> skeletons;
+  for (std::size_t c = 0; c < content.clips.size(); ++c) {
+    if (is_unwanted(c)) continue;
+    skeletons.insert(content.clips[c].skeleton);
+    clip_rows.push_back(std::move(content.clip_rows[c]));
+    clips.push_back(content.clips[c]);
+  }
+  content.clips = std::move(clips);
+  content.clip_rows = std::move(clip_rows);
+  std::erase_if(content.sources.skeletons,
+                [&](const SourceSkeleton& known) { return !skeletons.contains(known.id); });
+}
+
 std::vector<std::byte> encode_database(const DatabaseContent& content) {
-  if (content.clips.empty() || content.clips.size() != content.clip_rows.size())
-    throw std::invalid_argument("encode_database: clips and their rows do not correspond");
-  const auto arrays = all_arrays(content);
-  std::vector<Tensor> tensors;
-  for (const auto& array : arrays)
-    tensors.push_back({array.name, array.type, array.shape, array.bytes});
-  const std::string header = safetensors_header(metadata_of(content, arrays), tensors);
+  const EncodedDatabase encoded(content);
   std::vector<std::byte> file;
-  const auto append = [&](std::span<const std::byte> bytes) {
-    file.insert(file.end(), bytes.begin(), bytes.end());
-  };
-  append(std::as_bytes(std::span(header)));
-  for (const auto& array : arrays) append(array.bytes);
+  for (const Piece piece : encoded.pieces()) file.insert(file.end(), piece.begin(), piece.end());
   return file;
+}
+
+void write_database(const std::filesystem::path& path, const DatabaseContent& content) {
+  const EncodedDatabase encoded(content);
+  write_file_atomically(path, encoded.pieces());
 }
 
 }  // namespace sparse_mocap

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/database/motion_database.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -24,6 +25,7 @@ class DatabaseReader {
       check_checksums();
       read_settings();
       read_arrays();
+      read_sources();
       read_clips();
     } catch (const nlohmann::json::exception&) {
       refuse("its metadata is damaged");
@@ -117,30 +119,83 @@ class DatabaseReader {
     map_array(database_.clip_index_, "clip_index", ElementType::i32, 1);
   }
 
+  static Clip clip_from(const json& entry) {
+    Clip clip;
+    clip.name = entry.at("name").get<std::string>();
+    clip.actor = entry.at("actor").get<std::string>();
+    clip.motion_class = entry.at("class").get<std::string>();
+    clip.source = entry.at("source").get<std::string>();
+    clip.source_hash = entry.at("source_hash").get<std::string>();
+    clip.is_mirrored = entry.at("mirrored").get<bool>();
+    clip.is_reversed = entry.at("reversed").get<bool>();
+    clip.tempo = entry.at("tempo").get<double>();
+    clip.begin = entry.at("begin").get<int>();
+    clip.end = entry.at("end").get<int>();
+    // Not in every database:
+    clip.skeleton = entry.value("skeleton", "");
+    clip.skeleton_hash = entry.value("skeleton_hash", "");
+    clip.origin = entry.value("origin", "");
+    clip.license = entry.value("license", "");
+    clip.source_frames = entry.value("source_frames", 0);
+    clip.source_rate_hz = entry.value("source_rate_hz", 0.0);
+    clip.warnings = entry.value("warnings", std::map<std::string, int>());
+    return clip;
+  }
+
+  void check_clip(const Clip& clip, int expected_begin) const {
+    const auto refuse_clip = [&](const char* problem) {
+      refuse("clip '" + clip.name + "' " + problem);
+    };
+    if (clip.begin != expected_begin || clip.end <= clip.begin || clip.end > database_.num_frames())
+      refuse("the frames of clip '" + clip.name + "' do not follow the clip before it");
+    for (int frame = clip.begin; frame < clip.end; ++frame)
+      if (database_.clip_index(frame) != static_cast<int>(database_.clips_.size()))
+        refuse("a frame of clip '" + clip.name + "' names another clip");
+    if (!(clip.tempo > 0.0 && clip.tempo < 100.0)) refuse_clip("has an impossible tempo");
+    if (clip.source_frames < 0 || !(clip.source_rate_hz >= 0.0 && clip.source_rate_hz < 1e6))
+      refuse_clip("has an impossible source");
+    const auto& skeletons = database_.sources_.skeletons;
+    if (!clip.skeleton.empty() &&
+        std::none_of(skeletons.begin(), skeletons.end(),
+                     [&](const SourceSkeleton& known) { return known.id == clip.skeleton; }))
+      refuse_clip("names an unknown skeleton");
+  }
+
   void read_clips() {
     int expected_begin = 0;
     for (const auto& entry : json::parse(text("clips"))) {
-      Clip clip;
-      clip.name = entry.at("name").get<std::string>();
-      clip.actor = entry.at("actor").get<std::string>();
-      clip.motion_class = entry.at("class").get<std::string>();
-      clip.source = entry.at("source").get<std::string>();
-      clip.source_hash = entry.at("source_hash").get<std::string>();
-      clip.is_mirrored = entry.at("mirrored").get<bool>();
-      clip.is_reversed = entry.at("reversed").get<bool>();
-      clip.tempo = entry.at("tempo").get<double>();
-      clip.begin = entry.at("begin").get<int>();
-      clip.end = entry.at("end").get<int>();
-      if (clip.begin != expected_begin || clip.end <= clip.begin ||
-          clip.end > database_.num_frames())
-        refuse("the frames of clip '" + clip.name + "' do not follow the clip before it");
-      for (int frame = clip.begin; frame < clip.end; ++frame)
-        if (database_.clip_index(frame) != static_cast<int>(database_.clips_.size()))
-          refuse("a frame of clip '" + clip.name + "' names another clip");
+      Clip clip = clip_from(entry);
+      check_clip(clip, expected_begin);
       expected_begin = clip.end;
       database_.clips_.push_back(std::move(clip));
     }
     if (expected_begin != database_.num_frames()) refuse("frames without a clip");
+  }
+
+  static std::vector<LeftOut> left_out_from(const json& entries) {
+    std::vector<LeftOut> files;
+    for (const auto& entry : entries)
+      files.push_back(
+          {entry.at("source").get<std::string>(), entry.at("reason").get<std::string>()});
+    return files;
+  }
+
+  void read_sources() {
+    if (!view_.metadata.contains("sources")) return;  // not in every database
+    const json sources = json::parse(text("sources"));
+    for (const auto& entry : sources.at("skeletons")) {
+      SourceSkeleton skeleton;
+      skeleton.id = entry.at("id").get<std::string>();
+      skeleton.num_joints = entry.at("num_joints").get<int>();
+      skeleton.joints = entry.at("joints").get<std::map<std::string, std::string>>();
+      skeleton.unit_scale = entry.at("unit_scale").get<double>();
+      if (skeleton.id.empty() || skeleton.num_joints < 1 ||
+          !(skeleton.unit_scale > 0.0 && skeleton.unit_scale < 1e9))
+        refuse("the skeleton '" + skeleton.id + "' of its sources is impossible");
+      database_.sources_.skeletons.push_back(std::move(skeleton));
+    }
+    database_.sources_.skipped = left_out_from(sources.at("skipped"));
+    database_.sources_.duplicates = left_out_from(sources.at("duplicates"));
   }
 
   void check_values() const {

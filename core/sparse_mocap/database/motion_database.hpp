@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sparse_mocap/base/mapped_file.hpp"
+#include "sparse_mocap/database/clip.hpp"
 #include "sparse_mocap/motion/skeleton.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 
@@ -21,22 +22,6 @@ template <typename Scalar>
 using RowsView =
     Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 using FloatRows = RowsView<float>;
-
-// A stretch of rows [begin, end) that is one continuous motion.
-struct Clip {
-  std::string name;
-  std::string actor;
-  std::string motion_class;
-  std::string source;       // file name
-  std::string source_hash;  // XXH3 of the source file
-  bool is_mirrored = false;
-  bool is_reversed = false;
-  double tempo = 1.0;  // how much faster than performed
-  int begin = 0;
-  int end = 0;
-
-  int num_frames() const { return end - begin; }
-};
 
 // Columns of root_motion.
 namespace root_motion_column {
@@ -63,6 +48,7 @@ class MotionDatabase {
   double frame_time_s() const { return 1.0 / rate_hz_; }
   const Skeleton& skeleton() const { return skeleton_; }
   const std::vector<Clip>& clips() const { return clips_; }
+  const SourceRecord& sources() const { return sources_; }
   const std::vector<std::string>& site_names() const { return site_names_; }
   const std::filesystem::path& path() const { return path_; }
   const std::string& build_info() const { return build_info_; }  // JSON
@@ -87,6 +73,7 @@ class MotionDatabase {
   double rate_hz_ = 0.0;
   Skeleton skeleton_;
   std::vector<Clip> clips_;
+  SourceRecord sources_;
   std::vector<std::string> site_names_;
   std::string build_info_;
   FloatRows angles_{nullptr, 0, 0};
@@ -99,26 +86,5 @@ class MotionDatabase {
   FloatRows up_{nullptr, 0, 0};
   RowsView<std::int32_t> clip_index_{nullptr, 0, 0};
 };
-
-// The rows of one clip, or of many one after another, while a database is being built.
-struct DatabaseRows {
-  using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  Rows angles, positions, root_motion, contacts;
-  Rows specific_force_pivot, specific_force_end, angular_velocity, up;
-
-  int num_frames() const { return static_cast<int>(angles.rows()); }
-};
-
-// Everything that a database file holds.
-struct DatabaseContent {
-  Skeleton skeleton;
-  double rate_hz = 25.0;
-  std::vector<Clip> clips;              // begin and end are set on writing
-  std::vector<DatabaseRows> clip_rows;  // one entry a clip
-  std::string build_info;               // JSON: options, sources, versions
-};
-
-// The file as it will lie on disk.
-std::vector<std::byte> encode_database(const DatabaseContent& content);
 
 }  // namespace sparse_mocap

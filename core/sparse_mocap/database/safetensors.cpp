@@ -6,8 +6,10 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <stdexcept>
 
 #include "sparse_mocap/base/errors.hpp"
@@ -125,10 +127,12 @@ std::string safetensors_header(const std::map<std::string, std::string>& metadat
   header["__metadata__"] = metadata;
   std::size_t offset = 0;
   for (const auto& tensor : tensors) {
-    header[tensor.name] = {{"dtype", name_of(tensor.type)},
-                           {"shape", tensor.shape},
-                           {"data_offsets", {offset, offset + tensor.bytes.size()}}};
-    offset += tensor.bytes.size();
+    const std::size_t end = std::accumulate(tensor.shape.begin(), tensor.shape.end(),
+                                            size_of(tensor.type), std::multiplies<>()) +
+                            offset;
+    header[tensor.name] = {
+        {"dtype", name_of(tensor.type)}, {"shape", tensor.shape}, {"data_offsets", {offset, end}}};
+    offset = end;
   }
   std::string text = header.dump();
   while ((kPrefixBytes + text.size()) % kAlignment != 0) text.push_back(' ');

@@ -34,7 +34,8 @@ struct SafetensorsView {
   const Tensor& find(const std::string& name, const std::filesystem::path& path) const;
 };
 
-// The file's header, padded so that the arrays behind it start on a 64-byte boundary.
+// The file's header, padded so that the arrays behind it start on a 64-byte boundary. The tensors'
+// bytes are not looked at.
 std::string safetensors_header(const std::map<std::string, std::string>& metadata,
                                const std::vector<Tensor>& tensors);
 

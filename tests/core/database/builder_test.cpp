@@ -8,6 +8,9 @@
 #include <filesystem>
 
 #include "formats/format_test_support.hpp"
+#include "sparse_mocap/database/database_rows.hpp"
+#include "sparse_mocap/database/motion_database.hpp"
+#include "sparse_mocap/database/source_files.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 #include "support/synthetic.hpp"
@@ -67,7 +70,7 @@ TEST_F(BuildDatabase, CountsAndNamesWhatItTookIn) {
   EXPECT_EQ(database->clips()[0].actor, "anna");
   EXPECT_EQ(database->clips()[0].motion_class, "walk");
   EXPECT_EQ(database->clips()[0].source_hash.size(), 16U);
-  EXPECT_EQ(database->clips()[2].source, "anna_turn_001.bvh");
+  EXPECT_EQ(database->clips()[2].source, "deep/anna_turn_001.bvh");
 }
 
 TEST_F(BuildDatabase, HoldsTheRowsOfTheMotionsThemselves) {
@@ -145,26 +148,27 @@ TEST_F(BuildDatabase, LeavesTempoCopiesOutOfLargeDatabasesAndSaysSo) {
 TEST_F(BuildDatabase, LeavesOutWhatIsExcluded) {
   BuildOptions options = without_tempo_copies();
   options.exclude = {"*_walk_*"};
-  const auto files = find_motion_files({folder_ / "in"}, options.exclude);
+  const auto files = find_source_files({folder_ / "in"}, options.exclude);
   ASSERT_EQ(files.size(), 1U);
-  EXPECT_EQ(files[0].filename(), "anna_turn_001.bvh");
+  EXPECT_EQ(files[0].path.filename(), "anna_turn_001.bvh");
   EXPECT_EQ(build_database({folder_ / "in"}, output_, options).num_clips, 1);
-  EXPECT_THROW(find_motion_files({folder_ / "in"}, {"*"}), FormatError);
+  EXPECT_THROW(find_source_files({folder_ / "in"}, {"*"}), FormatError);
 }
 
 TEST_F(BuildDatabase, ListsEachFileOnceAndSorted) {
-  const auto files = find_motion_files(
+  const auto files = find_source_files(
       {folder_ / "in", folder_ / "in/deep", folder_ / "in/anna_walk_002.bvh"}, {});
   EXPECT_EQ(files.size(), 3U);
-  EXPECT_TRUE(std::is_sorted(files.begin(), files.end()));
+  EXPECT_TRUE(std::is_sorted(files.begin(), files.end(),
+                             [](const auto& a, const auto& b) { return a.path < b.path; }));
 }
 
 TEST_F(BuildDatabase, RefusesSourcesThatAreNoMotion) {
-  EXPECT_THROW(find_motion_files({folder_ / "nowhere"}, {}), FormatError);
-  EXPECT_THROW(find_motion_files({folder_ / "in/notes.txt"}, {}), FormatError);
-  EXPECT_THROW(find_motion_files({}, {}), FormatError);
+  EXPECT_THROW(find_source_files({folder_ / "nowhere"}, {}), FormatError);
+  EXPECT_THROW(find_source_files({folder_ / "in/notes.txt"}, {}), FormatError);
+  EXPECT_THROW(find_source_files({}, {}), FormatError);
   fs::create_directories(folder_ / "empty");
-  EXPECT_THROW(find_motion_files({folder_ / "empty"}, {}), FormatError);
+  EXPECT_THROW(find_source_files({folder_ / "empty"}, {}), FormatError);
   BuildOptions options;
   for (const double rate : {0.0, -25.0, 1e6, std::nan("")}) {
     options.rate_hz = rate;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/database/database_rows.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sparse_mocap/database/builder.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 #include "sparse_mocap/motion/humanoid.hpp"
 #include "support/synthetic.hpp"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/database/motion_database.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -10,6 +8,7 @@
 
 #include "formats/format_test_support.hpp"
 #include "sparse_mocap/base/files.hpp"
+#include "sparse_mocap/database/database_content.hpp"
 #include "sparse_mocap/database/safetensors.hpp"
 #include "support/synthetic.hpp"
 

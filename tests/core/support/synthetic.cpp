@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "sparse_mocap/database/builder.hpp"
+#include "sparse_mocap/database/database_rows.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 
 namespace sparse_mocap::testing {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sparse_mocap/database/motion_database.hpp"
+#include "sparse_mocap/database/database_content.hpp"
 #include "sparse_mocap/motion/motion.hpp"
 #include "sparse_mocap/motion/standard_skeleton.hpp"
 #include "sparse_mocap/reconstruction/method.hpp"

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What ``sparse-mocap database info`` tells of a database."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from .. import Clip, MotionDatabase
+
+_ARRAYS = (
+    "angles", "positions", "root_motion", "contacts", "specific_force_pivot", "specific_force_end",
+    "angular_velocity", "up",
+)  # fmt: skip
+_MOST_NAMES, _MOST_FILES = 40, 10
+
+
+def described(opened: MotionDatabase) -> dict[str, Any]:
+    """Returns everything that a database says of itself, ready for JSON."""
+    clips = opened.clips
+    originals = [clip for clip in clips if not is_copy(clip)]
+    return {
+        "path": opened.path,
+        "bytes": Path(opened.path).stat().st_size,
+        "array_bytes": {name: opened.array(name).nbytes for name in _ARRAYS},
+        "frames": opened.num_frames,
+        "rate_hz": opened.rate_hz,
+        "duration_s": opened.num_frames / opened.rate_hz,
+        "joints": list(opened.skeleton.names),
+        "sites": list(opened.site_names),
+        "num_clips": len(clips),
+        "num_mirrored": sum(clip.is_mirrored for clip in clips),
+        "num_reversed": sum(clip.is_reversed for clip in clips),
+        "num_tempo_copies": sum(clip.tempo != 1.0 for clip in clips),
+        "actors": _counts(clip.actor for clip in clips),
+        "motion_classes": _counts(clip.motion_class for clip in clips),
+        "num_sources": len({clip.source for clip in clips}),
+        "source_frames": sum(clip.source_frames for clip in originals),
+        "source_hours": sum(map(_source_hours, originals)),
+        "source_hours_by_actor": _hours_by(originals, lambda clip: clip.actor),
+        "source_hours_by_class": _hours_by(originals, lambda clip: clip.motion_class),
+        "origins": _counts(clip.origin for clip in originals if clip.origin),
+        "licenses": _counts(clip.license or "not stated" for clip in originals),
+        "skeletons": _skeletons(opened, originals),
+        "warnings": _warnings(originals),
+        "skipped": [{"source": source, "reason": why} for source, why in opened.skipped],
+        "duplicates": [{"source": source, "reason": why} for source, why in opened.duplicates],
+        "build": json.loads(opened.build_info),
+        "clips": [_clip(clip) for clip in clips],
+    }
+
+
+def is_copy(clip: Clip) -> bool:
+    """Whether a clip is another one mirrored, reversed or at another tempo."""
+    return clip.is_mirrored or clip.is_reversed or clip.tempo != 1.0
+
+
+def _clip(clip: Clip) -> dict[str, Any]:
+    names = (
+        "name", "actor", "motion_class", "source", "source_hash", "skeleton_hash", "skeleton",
+        "origin", "license", "source_frames", "source_rate_hz", "warnings", "is_mirrored",
+        "is_reversed", "tempo", "begin", "end",
+    )  # fmt: skip
+    return {name: getattr(clip, name) for name in names}
+
+
+def _counts(labels: Iterable[str]) -> dict[str, int]:
+    return dict(sorted(Counter(labels).items()))
+
+
+def _source_hours(clip: Clip) -> float:
+    return clip.source_frames / clip.source_rate_hz / 3600 if clip.source_rate_hz > 0 else 0.0
+
+
+def _hours_by(clips: Sequence[Clip], key: Callable[[Clip], str]) -> dict[str, float]:
+    hours: dict[str, float] = {}
+    for clip in clips:
+        hours[key(clip)] = hours.get(key(clip), 0.0) + _source_hours(clip)
+    return dict(sorted(hours.items()))
+
+
+def _skeletons(opened: MotionDatabase, originals: Sequence[Clip]) -> list[dict[str, Any]]:
+    counts = Counter(clip.skeleton for clip in originals)
+    return [
+        {
+            "id": skeleton.id,
+            "num_joints": skeleton.num_joints,
+            "num_files": counts[skeleton.id],
+            "unit_scale": skeleton.unit_scale,
+            "joints": {
+                name: skeleton.joints[name]
+                for name in opened.skeleton.names
+                if name in skeleton.joints
+            },
+        }
+        for skeleton in opened.skeletons
+    ]
+
+
+def _warnings(originals: Sequence[Clip]) -> list[dict[str, Any]]:
+    """The kinds, the most frequent first."""
+    counts: Counter[str] = Counter()
+    files: Counter[str] = Counter()
+    for clip in originals:
+        counts.update(clip.warnings)
+        files.update(clip.warnings.keys())
+    return [
+        {"kind": kind, "count": counts[kind], "num_files": files[kind]}
+        for kind in sorted(counts, key=lambda kind: (-counts[kind], kind))
+    ]
+
+
+def show(told: Mapping[str, Any]) -> None:
+    """Prints what described() returned for people."""
+    sizes = (f"{name} {size / 1e6:.1f} MB" for name, size in told["array_bytes"].items())
+    rows = {
+        "file": f"{told['path']}, {told['bytes'] / 1e6:.1f} MB",
+        "arrays": ", ".join(sizes),
+        "frames": f"{told['frames']} at {told['rate_hz']:g} Hz, {told['duration_s'] / 60:.1f} min",
+        "clips": f"{told['num_clips']}, of which {told['num_mirrored']} mirrored"
+        f" and {told['num_reversed']} reversed, {told['num_tempo_copies']} at another tempo",
+        "sources": f"{told['num_sources']} files, {told['source_frames']} frames,"
+        f" {told['source_hours']:.2f} h",
+        "actors": _counted(told["actors"]),
+        "classes": _counted(told["motion_classes"]),
+        "hours": _hours(told["source_hours_by_actor"]),
+        "by class": _hours(told["source_hours_by_class"]),
+        "origins": _counted(told["origins"]),
+        "licences": _counted(told["licenses"]),
+        "sites": ", ".join(told["sites"]),
+        "joints": " ".join(told["joints"]),
+        "build": ", ".join(f"{key} {value}" for key, value in told["build"].items()),
+    }
+    for name, text in rows.items():
+        if text:
+            click.echo(f"{name:<8} {text}")
+    for skeleton in told["skeletons"]:
+        click.echo(f"skeleton {_skeleton_line(skeleton)}")
+    for warning in told["warnings"]:
+        click.echo(
+            f"warning  {warning['kind']}: {warning['count']} times in {warning['num_files']} files"
+        )
+    for kind in ("skipped", "duplicates"):
+        files = told[kind]
+        for file in files[:_MOST_FILES]:
+            click.echo(f"left out {file['reason']}")
+        if len(files) > _MOST_FILES:
+            click.echo(f"left out and {len(files) - _MOST_FILES} more, see --json")
+
+
+def _skeleton_line(skeleton: Mapping[str, Any]) -> str:
+    mapping = " ".join(f"{name}={source}" for name, source in skeleton["joints"].items())
+    return (
+        f"{skeleton['id']}, {skeleton['num_joints']} joints, {skeleton['num_files']} files,"
+        f" unit scale {skeleton['unit_scale']:g}: {mapping}"
+    )
+
+
+def _counted(counts: Mapping[str, int]) -> str:
+    return _listed([f"{name} ({count})" for name, count in counts.items()])
+
+
+def _hours(hours: Mapping[str, float]) -> str:
+    return _listed([f"{name} {value:.2f} h" for name, value in hours.items()])
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = [f"and {len(names) - _MOST_NAMES} more"] if len(names) > _MOST_NAMES else []
+    return ", ".join([*names[:_MOST_NAMES], *more])

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sparse_mocap/database/clip.hpp"
+#include "sparse_mocap/database/database_rows.hpp"
+#include "sparse_mocap/database/motion_database.hpp"
+#include "sparse_mocap/motion/skeleton.hpp"
+
+namespace sparse_mocap {
+
+// Everything that a database file holds, while it is being made.
+struct DatabaseContent {
+  Skeleton skeleton;
+  double rate_hz = 25.0;
+  std::vector<Clip> clips;              // begin and end are set on writing
+  std::vector<DatabaseRows> clip_rows;  // one entry a clip
+  SourceRecord sources;
+  std::string build_info;  // JSON: options, counts, versions
+};
+
+// The content of an opened database.
+DatabaseContent database_content(const MotionDatabase& database);
+
+// Removes the clips of which is_unwanted(index) tells so, and skeletons that no clip has then.
+void remove_clips(DatabaseContent& content,
+                  const std::function<bool(std::size_t clip)>& is_unwanted);
+
+// The file as it will lie on disk. Throws std::invalid_argument when clips and their rows do not
+// correspond.
+std::vector<std::byte> encode_database(const DatabaseContent& content);
+
+// Writes it atomically, without a second copy of the rows. Throws std::filesystem_error.
+void write_database(const std::filesystem::path& path, const DatabaseContent& content);
+
+}  // namespace sparse_mocap

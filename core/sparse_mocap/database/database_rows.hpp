@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+
+#include "sparse_mocap/motion/motion.hpp"
+
+namespace sparse_mocap {
+
+// The rows of one clip, while a database is being made; columns as in MotionDatabase.
+struct DatabaseRows {
+  using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Rows angles, positions, root_motion, contacts;
+  Rows specific_force_pivot, specific_force_end, angular_velocity, up;
+
+  int num_frames() const { return static_cast<int>(angles.rows()); }
+};
+
+// The rows of one clip: the motion, on a standard skeleton at its own rate, sampled at rate_hz.
+DatabaseRows database_rows(const Motion& standard_motion, double rate_hz);
+
+}  // namespace sparse_mocap

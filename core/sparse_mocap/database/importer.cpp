@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/database/importer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sparse_mocap/base/ordered_work.hpp"
+#include "sparse_mocap/database/clip_names.hpp"
+
+namespace sparse_mocap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kSidecarName[] = "metadata.csv";
+
+struct BodyKey {
+  std::string actor;
+  std::array<long, 3 * kNumStandardJoints> bones_um;
+  auto operator<=>(const BodyKey&) const = default;
+};
+
+BodyKey body_key(const std::string& actor, const StandardBones& bones) {
+  BodyKey key{actor, {}};
+  for (std::size_t j = 0; j < bones.size(); ++j)
+    for (int k = 0; k < 3; ++k)
+      key.bones_um[3 * j + static_cast<std::size_t>(k)] = std::lround(1e6 * bones[j][k]);
+  return key;
+}
+
+bool lies_in(const fs::path& path, const fs::path& folder) {
+  if (folder.empty()) return true;
+  const fs::path relative = path.lexically_relative(folder.lexically_normal());
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+std::uint64_t sum_of_bytes(const std::vector<SourceFile>& files) {
+  std::uint64_t sum = 0;
+  for (const auto& file : files) sum += file.num_bytes;
+  return sum;
+}
+
+}  // namespace
+
+Importer::Importer(const std::vector<fs::path>& sources, const ImportOptions& options,
+                   const Progress& progress)
+    : options_(options), progress_(progress), files_(find_source_files(sources, options.exclude)) {
+  read_sidecars(sources);
+}
+
+// --- Labels --------------------------------------------------------------------------------------
+
+void Importer::read_sidecars(const std::vector<fs::path>& sources) {
+  if (!options_.metadata.empty()) {
+    sidecars_.emplace_back(fs::path(), Sidecar::read(options_.metadata));
+  } else {
+    for (const auto& source : sources)
+      if (fs::is_directory(source) && fs::exists(source / kSidecarName))
+        sidecars_.emplace_back(source, Sidecar::read(source / kSidecarName));
+  }
+  for (const auto& [folder, sidecar] : sidecars_) {
+    std::vector<SourceFile> described;
+    for (const auto& file : files_)
+      if (lies_in(file.path, folder)) described.push_back(file);
+    for (auto& warning : sidecar.warnings(described)) report_.warnings.push_back(warning);
+  }
+}
+
+bool Importer::describe(const SourceFile& file, Clip& clip) const {
+  return std::any_of(sidecars_.begin(), sidecars_.end(), [&](const auto& one) {
+    return lies_in(file.path, one.first) && one.second.describe(file, clip);
+  });
+}
+
+// --- Progress and report -------------------------------------------------------------------------
+
+void Importer::begin_pass(std::size_t num_files, std::uint64_t num_bytes,
+                          std::size_t num_passes_left) {
+  done_before_ += counts_.files;
+  counts_.files = 0;
+  counts_.frames = 0;
+  counts_.num_files = num_files;
+  counts_.total = done_before_ + num_passes_left * num_files;
+  counts_.num_bytes = counts_.bytes + num_passes_left * num_bytes;
+}
+
+void Importer::show(const SourceFile& file) const {
+  ProgressReport report = counts_;
+  const std::string name = file.path.filename().string();
+  report.done = done_before_ + counts_.files;
+  report.what = name;
+  progress_.report(report);
+}
+
+void Importer::count(const SourceFile& file, int num_frames) {
+  ++counts_.files;
+  counts_.bytes += file.num_bytes;
+  counts_.frames += static_cast<std::uint64_t>(num_frames);
+}
+
+void Importer::skip(const SourceFile& file, const FormatError& error) {
+  if (options_.is_strict) throw error;
+  report_.skipped.push_back({file.path, error.what()});
+}
+
+void Importer::leave_out(const SourceFile& file, const std::string& reason) {
+  report_.duplicates.push_back({file.path, FormatError({file.path}, reason).what()});
+}
+
+// --- First pass ----------------------------------------------------------------------------------
+
+// Whether another file with this content came before; that is reported unless it is wanted.
+bool Importer::is_repeated(std::size_t file, const SourceHashes& hashes) {
+  const auto [first, is_new] = first_of_hash_.emplace(hashes, file);
+  if (is_new || options_.keep_duplicates) return false;
+  leave_out(files_[file], "the same file as " + files_[first->second].name);
+  return true;
+}
+
+std::vector<StandardBones> Importer::survey() {
+  std::set<BodyKey> seen;
+  std::vector<StandardBones> bodies;
+  begin_pass(files_.size(), sum_of_bytes(files_), 2);
+  const auto work = [&](std::size_t i, const std::stop_token& stop) {
+    return survey_file(files_[i], options_.read, stop);
+  };
+  const auto take = [&](std::size_t i, const Outcome<SurveyedFile>& outcome) {
+    const auto* surveyed = std::get_if<SurveyedFile>(&outcome);
+    count(files_[i], surveyed != nullptr ? surveyed->num_frames : 0);
+    if (surveyed == nullptr) return skip(files_[i], std::get<FormatError>(outcome));
+    if (is_repeated(i, surveyed->hashes)) return;
+    Clip clip;
+    clip.actor = labels_of(files_[i].path).actor;
+    describe(files_[i], clip);
+    if (seen.insert(body_key(clip.actor, surveyed->bones)).second)
+      bodies.push_back(surveyed->bones);
+    num_source_seconds_ += surveyed->duration_s;
+    pending_.push_back({i, surveyed->hashes});
+  };
+  work_in_order(files_.size(), options_.num_threads, work, take,
+                [&](std::size_t i) { show(files_[i]); });
+  return bodies;
+}
+
+void Importer::recognise(DatabaseContent& content) {
+  std::multimap<SourceHashes, std::string> held;
+  std::set<std::string> held_sources;
+  for (const Clip& clip : content.clips) {
+    held.emplace(SourceHashes{clip.source_hash, clip.skeleton_hash}, clip.source);
+    held_sources.insert(clip.source);
+  }
+  begin_pass(files_.size(), sum_of_bytes(files_), 2);
+  const auto work = [&](std::size_t i, const std::stop_token&) -> Outcome<SourceHashes> {
+    try {
+      return hashes_of(files_[i].path);
+    } catch (const FormatError& error) {
+      return error;
+    }
+  };
+  const auto take = [&](std::size_t i, const Outcome<SourceHashes>& outcome) {
+    const SourceFile& file = files_[i];
+    count(file, 0);
+    const auto* hashes = std::get_if<SourceHashes>(&outcome);
+    if (hashes == nullptr) return skip(file, std::get<FormatError>(outcome));
+    const auto [begin, end] = held.equal_range(*hashes);
+    const bool is_held = std::any_of(begin, end, [&](const auto& known) {
+      return known.second == file.name || !options_.keep_duplicates;
+    });
+    if (is_held) {
+      ++report_.num_known;
+      for (Clip& clip : content.clips)
+        if (clip.source == file.name) describe(file, clip);
+      return;
+    }
+    if (is_repeated(i, *hashes)) return;
+    if (held_sources.contains(file.name)) replaced_.insert(file.name);
+    pending_.push_back({i, *hashes});
+  };
+  work_in_order(files_.size(), options_.num_threads, work, take,
+                [&](std::size_t i) { show(files_[i]); });
+}
+
+// --- Second pass ---------------------------------------------------------------------------------
+
+// What later files must not repeat; clips that are about to go may be.
+void Importer::know_clips(const DatabaseContent& content) {
+  for (std::size_t c = 0; c < content.clips.size(); ++c) {
+    const Clip& clip = content.clips[c];
+    if (clip.is_copy() || replaced_.contains(clip.source)) continue;
+    finder_.add(static_cast<int>(known_sources_.size()), content.clip_rows[c]);
+    known_sources_.push_back(clip.source);
+  }
+}
+
+void Importer::import(DatabaseContent& content, const CopyOptions& copies) {
+  const std::size_t num_old_clips = content.clips.size();
+  if (!options_.keep_duplicates) know_clips(content);
+  std::uint64_t num_bytes = 0;
+  for (const auto& pending : pending_) num_bytes += files_[pending.file].num_bytes;
+  begin_pass(pending_.size(), num_bytes, 1);
+  const auto work = [&](std::size_t i, const std::stop_token& stop) {
+    const Pending& pending = pending_[i];
+    return import_file(files_[pending.file], pending.hashes, content.skeleton, copies,
+                       options_.read, stop);
+  };
+  const auto take = [&](std::size_t i, Outcome<ImportedFile> outcome) {
+    const SourceFile& file = files_[pending_[i].file];
+    auto* imported = std::get_if<ImportedFile>(&outcome);
+    count(file, imported != nullptr ? imported->clips.front().source_frames : 0);
+    if (imported != nullptr) return take_in(file, std::move(*imported), content);
+    replaced_.erase(file.name);
+    skip(file, std::get<FormatError>(outcome));
+  };
+  work_in_order(pending_.size(), options_.num_threads, work, take,
+                [&](std::size_t i) { show(files_[pending_[i].file]); });
+  remove_replaced(content, num_old_clips);
+}
+
+void Importer::take_in(const SourceFile& file, ImportedFile imported, DatabaseContent& content) {
+  if (!options_.keep_duplicates) {
+    const DatabaseRows& rows = imported.clip_rows.front();
+    if (const auto same = finder_.find(rows)) {
+      leave_out(file, "the same motion as " + known_sources_[static_cast<std::size_t>(*same)]);
+      return;
+    }
+    finder_.add(static_cast<int>(known_sources_.size()), rows);
+    known_sources_.push_back(file.name);
+  }
+  ++report_.num_files;
+  report_.num_replaced += replaced_.contains(file.name) ? 1 : 0;
+  report_.source_bytes += file.num_bytes;
+  report_.source_frames += static_cast<std::uint64_t>(imported.clips.front().source_frames);
+  report_.warnings.insert(report_.warnings.end(), imported.warnings.begin(),
+                          imported.warnings.end());
+  auto& skeletons = content.sources.skeletons;
+  if (std::none_of(skeletons.begin(), skeletons.end(),
+                   [&](const auto& known) { return known.id == imported.skeleton.id; }))
+    skeletons.push_back(imported.skeleton);
+  for (std::size_t c = 0; c < imported.clips.size(); ++c) {
+    describe(file, imported.clips[c]);
+    content.clips.push_back(std::move(imported.clips[c]));
+    content.clip_rows.push_back(std::move(imported.clip_rows[c]));
+  }
+}
+
+void Importer::remove_replaced(DatabaseContent& content, std::size_t num_old_clips) {
+  if (replaced_.empty()) return;
+  remove_clips(content, [&](std::size_t c) {
+    return c < num_old_clips && replaced_.contains(content.clips[c].source);
+  });
+}
+
+}  // namespace sparse_mocap
