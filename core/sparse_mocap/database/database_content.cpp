@@ -120,7 +120,7 @@ std::map<std::string, std::string> metadata_of(const DatabaseContent& content,
   json sites = json::array();
   for (const auto& site : all_sites()) sites.push_back(std::string(site.name));
   json checksums;
-  for (const auto& array : arrays) checksums[array.tensor.name] = checksum(array.pieces);
+  for (const auto& array : arrays) checksums[array.tensor.name] = checksum_of_pieces(array.pieces);
   std::map<std::string, std::string> metadata{
       {"format", "sparse_mocap_database"},
       {"format_version", std::to_string(kDatabaseFormatVersion)},

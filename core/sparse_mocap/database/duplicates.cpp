@@ -33,10 +33,10 @@ std::optional<ClipDistance> distance_at(const Rows& a, const Rows& b, int lag) {
   const Eigen::Index begin = std::max<Eigen::Index>(1, 1 - lag);
   const Eigen::Index end = std::min(a.rows(), b.rows() - lag) - 1;
   if (end <= begin) return std::nullopt;
-  const double num_joints = static_cast<double>(a.cols()) / 3.0;
+  const Eigen::Index columns = a.cols() - root_motion_column::count;
+  const double num_joints = static_cast<double>(columns) / 3.0;
   const double frames = static_cast<double>(end - begin);
   const double hopeless = kHopeless_m * kHopeless_m * num_joints * frames;
-  const Eigen::Index columns = a.cols() - root_motion_column::count;
   double squares = 0.0, products = 0.0, squared_rates = 0.0, squared_steps = 0.0;
   for (Eigen::Index t = begin; t < end; ++t) {
     const auto difference = b.row(t + lag) - a.row(t);

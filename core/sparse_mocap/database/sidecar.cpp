@@ -105,15 +105,15 @@ std::vector<std::string> columns_of(const std::vector<Field>& header, FileLocati
     const std::string name = lower_case(field.text);
     if (std::find(kColumns.begin(), kColumns.end(), name) == kColumns.end())
       throw FormatError(where, "unknown column " + in_quotes(field.text),
-                        "did you mean '" + std::string(nearest_column(name)) +
-                            "'? Known are file, actor, class, source, license");
+                        "did you mean " + in_quotes(nearest_column(name)) +
+                            "? Known are file, actor, class, source, license");
     if (std::find(columns.begin(), columns.end(), name) != columns.end())
-      throw FormatError(where, "the column '" + name + "' occurs twice");
+      throw FormatError(where, "the column " + in_quotes(name) + " occurs twice");
     columns.push_back(name);
   }
   where.column = 1;
   if (std::find(columns.begin(), columns.end(), "file") == columns.end())
-    throw FormatError(where, "the column 'file' is missing",
+    throw FormatError(where, "the column \"file\" is missing",
                       "the header is file,actor,class,source,license");
   return columns;
 }
