@@ -204,6 +204,10 @@ class DatabaseReader {
           &database_.specific_force_pivot_, &database_.specific_force_end_,
           &database_.angular_velocity_, &database_.up_})
       if (!rows->allFinite()) refuse("a value is not a number");
+    const FloatRows& up = database_.up_;
+    for (Eigen::Index at = 0; at < up.cols(); at += 3)
+      if (((up.middleCols(at, 3).rowwise().norm().array() - 1.0F).abs() > 1e-3F).any())
+        refuse("a direction has not unit length");
   }
 
   std::filesystem::path path_;

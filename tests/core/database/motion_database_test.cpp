@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -194,6 +195,104 @@ TEST(MotionDatabase, RefusesClipsThatDoNotCoverTheFrames) {
       complaint(
           forged(file, [](Metadata&, Arrays& arrays) { arrays["clip_index"][4] = std::byte{1}; })),
       "names another clip"));
+}
+
+// The content with one source skeleton, and what a file says of where it comes from.
+DatabaseContent content_with_sources() {
+  DatabaseContent content = small_content(6);
+  content.sources.skeletons = {{"5", 31, {{"ltibia", "LeftLeg"}}, 0.01}};
+  content.sources.skipped = {{"bad.bvh", "bad.bvh:1: is no BVH"}};
+  content.sources.duplicates = {{"b.bvh", "b.bvh: the same file as a.bvh"}};
+  Clip& clip = content.clips[0];
+  clip.skeleton = "5";
+  clip.skeleton_hash = "fedcba9876543210";
+  clip.origin = "a studio";
+  clip.license = "CC0";
+  clip.source_frames = 700;
+  clip.source_rate_hz = 120.0;
+  clip.warnings = {{"an odd unit", 2}};
+  return content;
+}
+
+TEST(MotionDatabase, GivesBackWhatItWasToldOfItsSources) {
+  const DatabaseContent content = content_with_sources();
+  const auto database = database_of(content);
+  EXPECT_EQ(database->sources().skeletons, content.sources.skeletons);
+  EXPECT_EQ(database->sources().skipped, content.sources.skipped);
+  EXPECT_EQ(database->sources().duplicates, content.sources.duplicates);
+  const Clip& clip = database->clips()[0];
+  EXPECT_EQ(clip.skeleton, "5");
+  EXPECT_EQ(clip.skeleton_hash, "fedcba9876543210");
+  EXPECT_EQ(clip.origin, "a studio");
+  EXPECT_EQ(clip.license, "CC0");
+  EXPECT_EQ(clip.source_frames, 700);
+  EXPECT_EQ(clip.source_rate_hz, 120.0);
+  EXPECT_EQ(clip.warnings, (std::map<std::string, int>{{"an odd unit", 2}}));
+  EXPECT_EQ(encode_database(database_content(*database)), encode_database(content));
+}
+
+TEST(MotionDatabase, OpensDatabasesThatDoNotSayWhereTheyComeFrom) {
+  const auto file =
+      forged(encode_database(content_with_sources()), [](Metadata& metadata, Arrays&) {
+        metadata.erase("sources");
+        auto clips = nlohmann::json::parse(metadata["clips"]);
+        for (const char* key : {"skeleton", "skeleton_hash", "origin", "license", "source_frames",
+                                "source_rate_hz", "warnings"})
+          EXPECT_EQ(clips[0].erase(key), 1U) << key;
+        metadata["clips"] = clips.dump();
+      });
+  const auto database = MotionDatabase::from_bytes(own_bytes(file), "old.smdb");
+  EXPECT_EQ(database->clips()[0].source, "clip0.bvh");
+  EXPECT_EQ(database->clips()[0].source_frames, 0);
+  EXPECT_TRUE(database->sources().skeletons.empty());
+}
+
+TEST(MotionDatabase, RefusesImpossibleSources) {
+  const auto file = encode_database(content_with_sources());
+  const auto complaint_of = [&](const std::string& key, const std::string& from,
+                                const std::string& to) {
+    return complaint(forged(file, [&](Metadata& metadata, Arrays&) {
+      metadata[key] = testing::replaced(metadata[key], from, to);
+    }));
+  };
+  EXPECT_TRUE(contains(complaint_of("clips", "\"skeleton\":\"5\"", "\"skeleton\":\"6\""),
+                       "names an unknown skeleton"));
+  EXPECT_TRUE(contains(complaint_of("clips", ":700", ":-1"), "has an impossible source"));
+  EXPECT_TRUE(contains(complaint_of("clips", ":120.0", ":-1"), "has an impossible source"));
+  EXPECT_TRUE(contains(complaint_of("clips", "\"tempo\":1.0", "\"tempo\":0"), "impossible tempo"));
+  EXPECT_TRUE(contains(complaint_of("clips", "\"CC0\"", "7"), "metadata is damaged"));
+  EXPECT_TRUE(contains(complaint_of("sources", ":0.01", ":-1"), "skeleton '5' of its sources"));
+  EXPECT_TRUE(contains(complaint_of("sources", ":31", ":0"), "skeleton '5' of its sources"));
+  EXPECT_TRUE(contains(complaint_of("sources", "\"skipped\"", "\"x\""), "metadata is damaged"));
+  EXPECT_TRUE(contains(complaint_of("sources", "{", "["), "metadata is damaged"));
+}
+
+TEST(MotionDatabase, WritesTheSameFileInPieces) {
+  const DatabaseContent content = content_of({swaying_motion(template_skeleton(), 1, 50, 50.0),
+                                              swaying_motion(template_skeleton(), 2, 37, 50.0)},
+                                             25.0);
+  const TemporaryFolder folder;
+  write_database(folder / "motions.smdb", content);
+  const auto bytes = map_file(folder / "motions.smdb");
+  const auto encoded = encode_database(content);
+  EXPECT_TRUE(
+      std::equal(encoded.begin(), encoded.end(), bytes->view().begin(), bytes->view().end()));
+}
+
+TEST(MotionDatabase, NamesFilesThatAreNotUtf8) {
+  DatabaseContent content = small_content(5);
+  content.clips[0].source = "m\xFC\x6C.bvh";
+  EXPECT_EQ(complaint(encode_database(content)), "");
+}
+
+TEST(MotionDatabase, RefusesDirectionsThatAreNoDirections) {
+  const auto file = encode_database(small_content(4));
+  const float bad = 0.5F;
+  EXPECT_TRUE(contains(complaint(forged(file,
+                                        [&](Metadata&, Arrays& arrays) {
+                                          std::memcpy(arrays["up"].data() + 12, &bad, 4);
+                                        })),
+                       "a direction has not unit length"));
 }
 
 TEST(MotionDatabase, RefusesValuesThatAreNoNumbers) {
