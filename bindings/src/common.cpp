@@ -28,6 +28,13 @@ void require_shape(const Doubles& array, const std::vector<py::ssize_t>& expecte
                           ", got " + shape_text(shape));
 }
 
+py::str text_of(const std::string& text) {
+  PyObject* decoded =
+      PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace");
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
 py::array_t<double> new_array(const std::vector<py::ssize_t>& shape) {
   return py::array_t<double>(shape);
 }
@@ -39,7 +46,8 @@ Progress progress_from(const std::optional<py::function>& callback,
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (details) (*details)(report);
     if (!callback) return true;
-    const py::object answer = (*callback)(report.done, report.total, std::string(report.what));
+    const py::object answer =
+        (*callback)(report.done, report.total, text_of(std::string(report.what)));
     return answer.is_none() || answer.cast<bool>();
   });
 }

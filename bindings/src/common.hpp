@@ -33,6 +33,9 @@ using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 void require_shape(const Doubles& array, const std::vector<py::ssize_t>& expected,
                    const char* name);
 
+// The text with what is not UTF-8 replaced, as in names of files that are older than it.
+py::str text_of(const std::string& text);
+
 // A new array of this shape.
 py::array_t<double> new_array(const std::vector<py::ssize_t>& shape);
 

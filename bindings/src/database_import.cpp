@@ -62,17 +62,25 @@ int drop(const fs::path& database, const std::vector<std::string>& clips,
   return drop_from_database(database, clips, output.value_or(database));
 }
 
-std::vector<std::pair<std::string, std::string>> pairs_of(const std::vector<SkippedFile>& files) {
-  std::vector<std::pair<std::string, std::string>> pairs;
-  for (const auto& file : files) pairs.emplace_back(file.path.string(), file.reason);
+py::list pairs_of(const std::vector<SkippedFile>& files) {
+  py::list pairs;
+  for (const auto& file : files)
+    pairs.append(py::make_tuple(text_of(file.path.string()), text_of(file.reason)));
   return pairs;
+}
+
+py::list texts_of(const std::vector<std::string>& lines) {
+  py::list texts;
+  for (const auto& line : lines) texts.append(text_of(line));
+  return texts;
 }
 
 void bind_reports(py::module_& m) {
   py::class_<ProgressReport>(m, "ProgressReport")
       .def_readonly("done", &ProgressReport::done)
       .def_readonly("total", &ProgressReport::total)
-      .def_property_readonly("what", [](const ProgressReport& r) { return std::string(r.what); })
+      .def_property_readonly("what",
+                             [](const ProgressReport& r) { return text_of(std::string(r.what)); })
       .def_readonly("files", &ProgressReport::files)
       .def_readonly("num_files", &ProgressReport::num_files)
       .def_readonly("frames", &ProgressReport::frames)
@@ -91,7 +99,7 @@ void bind_reports(py::module_& m) {
       .def_property_readonly("skipped", [](const BuildReport& r) { return pairs_of(r.skipped); })
       .def_property_readonly("duplicates",
                              [](const BuildReport& r) { return pairs_of(r.duplicates); })
-      .def_readonly("warnings", &BuildReport::warnings);
+      .def_property_readonly("warnings", [](const BuildReport& r) { return texts_of(r.warnings); });
 }
 
 }  // namespace

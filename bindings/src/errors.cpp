@@ -20,8 +20,8 @@ py::object& format_error_class() {
 }
 
 void set_format_error(const FormatError& error) {
-  const py::object instance = format_error_class()(error.what());
-  instance.attr("path") = error.location().path.string();
+  const py::object instance = format_error_class()(text_of(error.what()));
+  instance.attr("path") = text_of(error.location().path.string());
   instance.attr("line") = error.location().line;
   instance.attr("column") = error.location().column;
   PyErr_SetObject(format_error_class().ptr(), instance.ptr());
