@@ -278,14 +278,17 @@ def build_database(
     keep_duplicates: bool = False,
     num_threads: int = 0,
     metadata: Path | None = None,
+    by_hand: dict[str, str] = ...,
+    mappings: Path | None = None,
     progress: ProgressCallback | None = None,
     details: Callable[[ProgressReport], object] | None = None,
 ) -> BuildReport:
     """Builds a database from motion files and folders of them.
 
     num_threads: 0 is one a processor; the file is the same. metadata: a table file,actor,class,
-    source,license; None takes metadata.csv of the source folders. details hears each report before
-    progress does.
+    source,license; None takes metadata.csv of the source folders. by_hand: the joints of skeletons
+    that have them all; mappings: a folder that remembers those of others. details hears each report
+    before progress does.
     """
 
 def add_to_database(
@@ -298,6 +301,8 @@ def add_to_database(
     keep_duplicates: bool = False,
     num_threads: int = 0,
     metadata: Path | None = None,
+    by_hand: dict[str, str] = ...,
+    mappings: Path | None = None,
     progress: ProgressCallback | None = None,
     details: Callable[[ProgressReport], object] | None = None,
 ) -> BuildReport:

@@ -12,13 +12,15 @@ using Callback = std::optional<py::function>;
 
 ImportOptions import_options(const std::vector<std::string>& exclude, bool strict,
                              bool keep_duplicates, int num_threads,
-                             const std::optional<fs::path>& metadata) {
+                             const std::optional<fs::path>& metadata, const JointNames& by_hand,
+                             const std::optional<fs::path>& mappings) {
   ImportOptions options;
   options.exclude = exclude;
   options.is_strict = strict;
   options.keep_duplicates = keep_duplicates;
   options.num_threads = num_threads;
   options.metadata = metadata.value_or(fs::path());
+  options.mapping = {by_hand, mappings.value_or(fs::path())};
   return options;
 }
 
@@ -33,8 +35,10 @@ BuildReport build(const Paths& sources, const fs::path& output, double rate_hz, 
                   bool reverse, const std::vector<double>& tempo_copies,
                   const std::vector<std::string>& exclude, bool strict, bool keep_duplicates,
                   int num_threads, const std::optional<fs::path>& metadata,
+                  const JointNames& by_hand, const std::optional<fs::path>& mappings,
                   const Callback& callback, const Callback& details) {
-  BuildOptions options{import_options(exclude, strict, keep_duplicates, num_threads, metadata)};
+  BuildOptions options{
+      import_options(exclude, strict, keep_duplicates, num_threads, metadata, by_hand, mappings)};
   options.rate_hz = rate_hz;
   options.add_mirrored = mirror;
   options.add_reversed = reverse;
@@ -47,10 +51,11 @@ BuildReport build(const Paths& sources, const fs::path& output, double rate_hz, 
 BuildReport add(const fs::path& database, const Paths& sources,
                 const std::optional<fs::path>& output, const std::vector<std::string>& exclude,
                 bool strict, bool keep_duplicates, int num_threads,
-                const std::optional<fs::path>& metadata, const Callback& callback,
+                const std::optional<fs::path>& metadata, const JointNames& by_hand,
+                const std::optional<fs::path>& mappings, const Callback& callback,
                 const Callback& details) {
   const ImportOptions options =
-      import_options(exclude, strict, keep_duplicates, num_threads, metadata);
+      import_options(exclude, strict, keep_duplicates, num_threads, metadata, by_hand, mappings);
   const Progress progress = progress_from(callback, details);
   const py::gil_scoped_release release;
   return add_to_database(database, sources, output.value_or(database), options, progress);
@@ -112,12 +117,14 @@ void bind_database_import(py::module_& m) {
         py::arg("rate_hz") = 25.0, py::arg("mirror") = false, py::arg("reverse") = false,
         py::arg("tempo_copies") = BuildOptions().tempo_copies, py::arg("exclude") = no_patterns,
         py::arg("strict") = false, py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
-        py::arg("metadata") = py::none(), py::arg("progress") = py::none(),
+        py::arg("metadata") = py::none(), py::arg("by_hand") = JointNames(),
+        py::arg("mappings") = py::none(), py::arg("progress") = py::none(),
         py::arg("details") = py::none());
   m.def("add_to_database", &add, py::arg("database"), py::arg("sources"),
         py::arg("output") = py::none(), py::kw_only(), py::arg("exclude") = no_patterns,
         py::arg("strict") = false, py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
-        py::arg("metadata") = py::none(), py::arg("progress") = py::none(),
+        py::arg("metadata") = py::none(), py::arg("by_hand") = JointNames(),
+        py::arg("mappings") = py::none(), py::arg("progress") = py::none(),
         py::arg("details") = py::none());
   m.def("drop_from_database", &drop, py::arg("database"), py::arg("clips"),
         py::arg("output") = py::none());

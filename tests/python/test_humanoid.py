@@ -210,6 +210,21 @@ def test_a_mapping_by_hand_is_remembered_until_it_is_forgotten(
     assert inspect_motion(strange).found_by == "shape"
 
 
+def test_databases_are_built_as_mappings_say(cli: Cli, strange: Path, tmp_path: Path) -> None:
+    found = inspect_motion(strange).mapping
+    assert found is not None
+    joints = {"head": found.joints["thorax"]}
+    told, path = tmp_path / "map.json", tmp_path / "db.smdb"
+    sparse_mocap.write_mapping(told, joints)
+    assert cli("database", "build", strange, "-o", path, "--mapping", told).exit_code == 0
+    (by_hand,) = sparse_mocap.MotionDatabase(path).skeletons
+    assert cli("inspect", strange, "--mapping", told, "--remember").exit_code == 0
+    assert cli("database", "build", strange, "-o", path).exit_code == 0
+    (remembered,) = sparse_mocap.MotionDatabase(path).skeletons
+    assert by_hand.joints == remembered.joints
+    assert by_hand.joints["head"] == joints["head"] != found.joints["head"]
+
+
 def test_a_mapping_that_names_no_joint_says_which_is_nearest(
     cli: Cli, performance: Path, tmp_path: Path
 ) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -16,6 +17,8 @@ from .. import (
     add_to_database,
     build_database,
     drop_from_database,
+    mapping_folder,
+    read_mapping,
 )
 from .console import import_bar, warn
 from .database_info import described, show
@@ -37,6 +40,10 @@ _IMPORT_OPTIONS = (
         " metadata.csv in the source folder.",
     ),
     click.option(
+        "--mapping", "mapping_path", metavar="MAP.json", type=FilePath,
+        help="Takes these joints for the body's in skeletons that have them (see inspect).",
+    ),
+    click.option(
         "--threads", "num_threads", type=click.IntRange(0, 1024), default=0,
         help="How many; 0, the default, is one a processor. The database is the same.",
     ),
@@ -44,9 +51,14 @@ _IMPORT_OPTIONS = (
 
 
 def _import_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    @functools.wraps(command)
+    def with_mappings(*args: Any, mapping_path: Path | None, **options: Any) -> Any:
+        by_hand = read_mapping(mapping_path) if mapping_path else {}
+        return command(*args, by_hand=by_hand, mappings=mapping_folder(), **options)
+
     for option in reversed(_IMPORT_OPTIONS):
-        command = option(command)
-    return command
+        with_mappings = option(with_mappings)
+    return with_mappings
 
 
 _output_option = click.option(

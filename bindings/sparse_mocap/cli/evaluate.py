@@ -14,7 +14,7 @@ from typing import Any
 import click
 from rich.table import Table
 
-from .. import MotionDatabase, _core, build_database
+from .. import MotionDatabase, _core, build_database, mapping_folder
 from ..evaluation import SCENARIOS, Evaluation, Settings, motion_files
 from ..evaluation import evaluate as run_evaluation
 from .console import ProgressCallback, print_table, progress_bar, warn, write_json
@@ -104,7 +104,9 @@ def _database(
             cache.mkdir(parents=True, exist_ok=True)
             path = cache / f"evaluation_{_fingerprint(source)}.smdb"
         if not path.exists():
-            build_database([source], path, mirror=True, progress=progress)
+            build_database(
+                [source], path, mirror=True, mappings=mapping_folder(), progress=progress
+            )
         yield MotionDatabase(path)
 
 

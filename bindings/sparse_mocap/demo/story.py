@@ -14,6 +14,7 @@ from .. import (
     Reconstruction,
     Reconstructor,
     build_database,
+    mapping_folder,
     nearest_poses,
     write_bvh,
     write_take,
@@ -81,7 +82,12 @@ def _chosen(output: Path, database_source: Path | None) -> Choice:
 def _built(choice: Choice, path: Path) -> MotionDatabase:
     with progress_bar("Building") as progress:
         report = build_database(
-            [choice.library], path, mirror=True, exclude=choice.exclude, progress=progress
+            [choice.library],
+            path,
+            mirror=True,
+            exclude=choice.exclude,
+            mappings=mapping_folder(),
+            progress=progress,
         )
     click.echo(
         f"Built a database of {report.num_clips} clips, {report.num_frames} frames,"

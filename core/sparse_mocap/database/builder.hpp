@@ -8,6 +8,7 @@
 
 #include "sparse_mocap/base/progress.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
+#include "sparse_mocap/motion/humanoid_file.hpp"
 
 namespace sparse_mocap {
 
@@ -19,6 +20,7 @@ struct ImportOptions {
   int num_threads = 0;               // 0: one a processor; the result is the same
   // A table of labels (see Sidecar); empty: `metadata.csv` in the source folders that have one.
   std::filesystem::path metadata;
+  MappingChoice mapping;  // what was said about bodies by hand
   ReadOptions read;
 };
 

@@ -120,13 +120,13 @@ Clip clip_of(const SourceFile& file, const SourceHashes& hashes, const Motion& m
 }  // namespace
 
 Outcome<SurveyedFile> survey_file(const SourceFile& file, const ReadOptions& options,
-                                  const std::stop_token& stop) {
+                                  const MappingChoice& choice, const std::stop_token& stop) {
   return outcome_of<SurveyedFile>(file, [&] {
     SurveyedFile surveyed;
     surveyed.hashes = hashes_of(file.path);
     const MotionFile read = read_with_frames(file, options);
     stop_if_asked(stop);
-    surveyed.bones = map_humanoid(read.motion).bones;
+    surveyed.bones = map_as_chosen(read.motion, choice).bones;
     surveyed.num_frames = read.motion.num_frames();
     surveyed.duration_s = read.motion.duration_s();
     return surveyed;
@@ -135,12 +135,13 @@ Outcome<SurveyedFile> survey_file(const SourceFile& file, const ReadOptions& opt
 
 Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& hashes,
                                   const Skeleton& standard, const CopyOptions& copies,
-                                  const ReadOptions& options, const std::stop_token& stop) {
+                                  const ReadOptions& options, const MappingChoice& choice,
+                                  const std::stop_token& stop) {
   return outcome_of<ImportedFile>(file, [&] {
     ImportedFile out;
     const MotionFile read = read_with_frames(file, options);
     stop_if_asked(stop);
-    const HumanoidMapping mapping = map_humanoid(read.motion);
+    const HumanoidMapping mapping = map_as_chosen(read.motion, choice);
     std::vector<std::string> texts = mapping.warnings;
     const Motion motion = to_standard(read.motion, mapping, standard, &texts);
     out.skeleton = described(read.motion.skeleton, mapping);

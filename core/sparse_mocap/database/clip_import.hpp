@@ -13,6 +13,7 @@
 #include "sparse_mocap/database/database_rows.hpp"
 #include "sparse_mocap/database/source_files.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
+#include "sparse_mocap/motion/humanoid_file.hpp"
 #include "sparse_mocap/motion/standard_skeleton.hpp"
 
 namespace sparse_mocap {
@@ -49,10 +50,11 @@ struct CopyOptions {
 
 // Both throw Cancelled soon after stop is requested.
 Outcome<SurveyedFile> survey_file(const SourceFile& file, const ReadOptions& options,
-                                  const std::stop_token& stop);
+                                  const MappingChoice& choice, const std::stop_token& stop);
 Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& hashes,
                                   const Skeleton& standard, const CopyOptions& copies,
-                                  const ReadOptions& options, const std::stop_token& stop);
+                                  const ReadOptions& options, const MappingChoice& choice,
+                                  const std::stop_token& stop);
 
 // A warning without what differs from file to file: numbers become '#', quoted names '...'.
 std::string kind_of_warning(const std::string& warning);

@@ -123,7 +123,7 @@ std::vector<StandardBones> Importer::survey() {
   std::vector<StandardBones> bodies;
   begin_pass(files_.size(), sum_of_bytes(files_), 2);
   const auto work = [&](std::size_t i, const std::stop_token& stop) {
-    return survey_file(files_[i], options_.read, stop);
+    return survey_file(files_[i], options_.read, options_.mapping, stop);
   };
   const auto take = [&](std::size_t i, const Outcome<SurveyedFile>& outcome) {
     const auto* surveyed = std::get_if<SurveyedFile>(&outcome);
@@ -202,7 +202,7 @@ void Importer::import(DatabaseContent& content, const CopyOptions& copies) {
   const auto work = [&](std::size_t i, const std::stop_token& stop) {
     const Pending& pending = pending_[i];
     return import_file(files_[pending.file], pending.hashes, content.skeleton, copies,
-                       options_.read, stop);
+                       options_.read, options_.mapping, stop);
   };
   const auto take = [&](std::size_t i, Outcome<ImportedFile> outcome) {
     const SourceFile& file = files_[pending_[i].file];

@@ -67,6 +67,17 @@ JointNames remembered_mapping(const std::filesystem::path& folder, const Skeleto
   return std::filesystem::exists(path, ignored) ? read_mapping(path) : JointNames();
 }
 
+HumanoidMapping map_as_chosen(const Motion& source, const MappingChoice& choice) {
+  const auto has = [&](const auto& pair) { return source.skeleton.find(pair.second) >= 0; };
+  JointNames by_hand;
+  if (std::all_of(choice.by_hand.begin(), choice.by_hand.end(), has)) by_hand = choice.by_hand;
+  if (by_hand.empty() && !choice.remembered.empty())
+    by_hand = remembered_mapping(choice.remembered, source.skeleton);
+  HumanoidMapping mapping = map_humanoid(source, by_hand);
+  if (!by_hand.empty()) mapping.warnings.emplace_back("the body was mapped by hand");
+  return mapping;
+}
+
 JointNames joint_names(const Skeleton& source, const HumanoidMapping& mapping) {
   JointNames names;
   for (std::size_t j = 0; j < mapping.source.standard.size(); ++j)

@@ -25,6 +25,16 @@ std::filesystem::path remembered_mapping_path(const std::filesystem::path& folde
 // Throws FormatError when what is kept cannot be read.
 JointNames remembered_mapping(const std::filesystem::path& folder, const Skeleton& source);
 
+// What a user said about bodies, for files of any skeleton.
+struct MappingChoice {
+  JointNames by_hand;                // for skeletons that have all of these joints
+  std::filesystem::path remembered;  // a folder of mappings for others; empty: none
+};
+
+// map_humanoid with what was said about such a skeleton; a warning says that it was.
+// Throws MappingError, FormatError (a remembered mapping that cannot be read).
+HumanoidMapping map_as_chosen(const Motion& source, const MappingChoice& choice);
+
 // The source's joints of a mapping, as read_mapping gives them.
 JointNames joint_names(const Skeleton& source, const HumanoidMapping& mapping);
 
