@@ -252,8 +252,8 @@ class BuildReport:
     duplicates: list[tuple[str, str]]
     warnings: list[str]
 
-class ImportOptions(TypedDict, total=False):
-    """Of build_database and add_to_database (no class at run time).
+class _ImportOptions(TypedDict, total=False):
+    """Of build_database and add_to_database; no class at run time.
 
     num_threads: 0, the default, is one a processor; the file is the same. metadata: a table
     file,actor,class,source,license; by default metadata.csv of the source folders. details hears
@@ -276,7 +276,7 @@ def build_database(
     mirror: bool = False,
     reverse: bool = False,
     tempo_copies: Sequence[float] = (0.8, 1.25),
-    **options: Unpack[ImportOptions],
+    **options: Unpack[_ImportOptions],
 ) -> BuildReport:
     """Builds a database from motion files and folders of them."""
 
@@ -284,7 +284,7 @@ def add_to_database(
     database: Path,
     sources: Sequence[Path],
     output: Path | None = None,
-    **options: Unpack[ImportOptions],
+    **options: Unpack[_ImportOptions],
 ) -> BuildReport:
     """Adds motion files on the database's skeleton, at its rate, with its kinds of copies.
 
