@@ -7,6 +7,7 @@ the call by returning False (the call then raises Cancelled and leaves nothing b
 
 import os
 from collections.abc import Callable, Sequence
+from typing import TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,10 +38,8 @@ class Cancelled(Exception):
 class Skeleton:
     """A joint tree: pivot = end_parent + R_parent offset, end = pivot + R_joint bone."""
 
-    @property
-    def names(self) -> list[str]: ...
-    @property
-    def parents(self) -> list[int]: ...
+    names: list[str]
+    parents: list[int]
     @property
     def offsets(self) -> Floats:
         """(J, 3) m, from the parent's end to the pivot, in the parent's frame."""
@@ -58,12 +57,9 @@ class Motion:
         root_positions: ArrayLike,
         rotations: ArrayLike,
     ) -> None: ...
-    @property
-    def skeleton(self) -> Skeleton: ...
-    @property
-    def frame_time_s(self) -> float: ...
-    @property
-    def num_frames(self) -> int: ...
+    skeleton: Skeleton
+    frame_time_s: float
+    num_frames: int
     @property
     def root_positions(self) -> Floats:
         """(T, 3) m, world, pivot of the root."""
@@ -153,25 +149,25 @@ def filtered_at(times_s: ArrayLike, values: ArrayLike, wanted_s: ArrayLike) -> F
 FILTER_REACH_S: float
 
 class Clip:
+    """A stretch of a database's rows.
+
+    source is the file, relative to the folder built from; hashes are XXH3 of it and of the .asf
+    that was read with it; skeleton is the id of its SourceSkeleton; origin and license are notes;
+    warnings are kinds of warnings about the file and how often (empty for copies).
+    """
+
     name: str
     actor: str
     motion_class: str
     source: str
-    """The file, relative to the folder that the database was built from."""
     source_hash: str
-    """XXH3 of the file."""
     skeleton_hash: str
-    """XXH3 of the .asf that was read with it; empty for other formats."""
     skeleton: str
-    """The id of its SourceSkeleton."""
     origin: str
-    """A note on where the recording comes from."""
     license: str
-    """A note on the terms of its use."""
     source_frames: int
     source_rate_hz: float
     warnings: dict[str, int]
-    """Kinds of warnings about the file, and how often; empty for copies."""
     is_mirrored: bool
     is_reversed: bool
     tempo: float
@@ -179,39 +175,29 @@ class Clip:
     end: int
 
 class SourceSkeleton:
-    """One kind of skeleton among a database's sources."""
+    """One kind of skeleton among a database's sources.
+
+    joints are the source's that move the standard ones; unit_scale times its lengths are metres.
+    """
 
     id: str
     num_joints: int
     joints: dict[str, str]
-    """Standard joints, and the source's joint that moves each."""
     unit_scale: float
-    """The file's lengths as read times this are metres."""
 
 class MotionDatabase:
     """An opened .smdb, read-only and thread-safe."""
 
     def __init__(self, path: Path) -> None: ...
-    @property
-    def path(self) -> str: ...
-    @property
-    def num_frames(self) -> int: ...
-    @property
-    def rate_hz(self) -> float: ...
-    @property
-    def skeleton(self) -> Skeleton: ...
-    @property
-    def clips(self) -> list[Clip]: ...
-    @property
-    def skeletons(self) -> list[SourceSkeleton]: ...
-    @property
-    def skipped(self) -> list[tuple[str, str]]:
-        """Files that could not be used: (source, reason)."""
-    @property
-    def duplicates(self) -> list[tuple[str, str]]:
-        """Files whose motion is there already: (source, reason)."""
-    @property
-    def site_names(self) -> list[str]: ...
+    path: str
+    num_frames: int
+    rate_hz: float
+    skeleton: Skeleton
+    clips: list[Clip]
+    skeletons: list[SourceSkeleton]
+    skipped: list[tuple[str, str]]
+    duplicates: list[tuple[str, str]]
+    site_names: list[str]
     @property
     def build_info(self) -> str:
         """JSON: options and counts of the build."""
@@ -231,39 +217,59 @@ def find_motion_files(sources: Sequence[Path], exclude: Sequence[str] = ()) -> l
     """
 
 class ProgressReport:
-    """How far an import is: done of total steps, and what its files held so far."""
+    """How far an import is: done of total steps.
+
+    files of num_files are through in this pass over them (there are two) and hold so many frames;
+    bytes of num_bytes are read, over all passes.
+    """
 
     done: int
     total: int
     what: str
     files: int
-    """Of num_files, through in this pass over the files; an import has two."""
     num_files: int
     frames: int
-    """Of the files through in this pass."""
     bytes: int
-    """Read, of num_bytes to be read in all passes."""
     num_bytes: int
 
 class BuildReport:
+    """What an import did.
+
+    num_files, source_frames and source_bytes are what it took in, num_clips and num_frames what
+    the database holds; num_known files were in already, num_replaced of num_files took the place
+    of what they held before. skipped (unusable) and duplicates are (path, reason).
+    """
+
     num_files: int
-    """Taken in by this call."""
     num_known: int
-    """In the database already, not read again."""
     num_replaced: int
-    """Of num_files: took the place of what the file held before."""
     num_clips: int
-    """Of the database written."""
     num_frames: int
     source_frames: int
-    """Of the files taken in."""
     source_bytes: int
     elapsed_s: float
     skipped: list[tuple[str, str]]
-    """Files that cannot be used: (path, reason)."""
     duplicates: list[tuple[str, str]]
-    """Files whose motion is there already: (path, reason)."""
     warnings: list[str]
+
+class _ImportOptions(TypedDict, total=False):
+    """Of build_database and add_to_database; no class at run time.
+
+    num_threads: 0, the default, is one a processor; the file is the same. metadata: a table
+    file,actor,class,source,license; by default metadata.csv of the source folders. by_hand: the
+    joints of skeletons that have them all; mappings: a folder that remembers those of others.
+    details hears each report before progress does.
+    """
+
+    exclude: Sequence[str]
+    strict: bool
+    keep_duplicates: bool
+    num_threads: int
+    metadata: Path | None
+    by_hand: dict[str, str]
+    mappings: Path | None
+    progress: ProgressCallback | None
+    details: Callable[[ProgressReport], object] | None
 
 def build_database(
     sources: Sequence[Path],
@@ -273,38 +279,15 @@ def build_database(
     mirror: bool = False,
     reverse: bool = False,
     tempo_copies: Sequence[float] = (0.8, 1.25),
-    exclude: Sequence[str] = (),
-    strict: bool = False,
-    keep_duplicates: bool = False,
-    num_threads: int = 0,
-    metadata: Path | None = None,
-    by_hand: dict[str, str] = ...,
-    mappings: Path | None = None,
-    progress: ProgressCallback | None = None,
-    details: Callable[[ProgressReport], object] | None = None,
+    **options: Unpack[_ImportOptions],
 ) -> BuildReport:
-    """Builds a database from motion files and folders of them.
-
-    num_threads: 0 is one a processor; the file is the same. metadata: a table file,actor,class,
-    source,license; None takes metadata.csv of the source folders. by_hand: the joints of skeletons
-    that have them all; mappings: a folder that remembers those of others. details hears each report
-    before progress does.
-    """
+    """Builds a database from motion files and folders of them."""
 
 def add_to_database(
     database: Path,
     sources: Sequence[Path],
     output: Path | None = None,
-    *,
-    exclude: Sequence[str] = (),
-    strict: bool = False,
-    keep_duplicates: bool = False,
-    num_threads: int = 0,
-    metadata: Path | None = None,
-    by_hand: dict[str, str] = ...,
-    mappings: Path | None = None,
-    progress: ProgressCallback | None = None,
-    details: Callable[[ProgressReport], object] | None = None,
+    **options: Unpack[_ImportOptions],
 ) -> BuildReport:
     """Adds motion files on the database's skeleton, at its rate, with its kinds of copies.
 
@@ -326,10 +309,8 @@ class PoseEstimate:
     @property
     def rotations(self) -> Floats:
         """(21, 4) joint rotations, w x y z, the root's in the world."""
-    @property
-    def root_position(self) -> Floats: ...
-    @property
-    def yaw_rad(self) -> float: ...
+    root_position: Floats
+    yaw_rad: float
     @property
     def contacts(self) -> Floats:
         """(2,) probability that the left and right foot stand."""
@@ -342,28 +323,19 @@ class PoseEstimate:
     @property
     def clip(self) -> int:
         """Index of the clip the estimate leans on most."""
-    @property
-    def database_frame(self) -> int: ...
+    database_frame: int
 
 class Reconstruction:
     """A solved take: the stacked estimates (T first) and the motion."""
 
-    @property
-    def motion(self) -> Motion: ...
-    @property
-    def angles(self) -> Floats: ...
-    @property
-    def positions(self) -> Floats: ...
-    @property
-    def contacts(self) -> Floats: ...
-    @property
-    def spread_m(self) -> Floats: ...
-    @property
-    def sensor_misfit_mps2(self) -> Floats: ...
-    @property
-    def clips(self) -> NDArray[np.int64]: ...
-    @property
-    def database_frames(self) -> NDArray[np.int64]: ...
+    motion: Motion
+    angles: Floats
+    positions: Floats
+    contacts: Floats
+    spread_m: Floats
+    sensor_misfit_mps2: Floats
+    clips: NDArray[np.int64]
+    database_frames: NDArray[np.int64]
 
 def method_names() -> list[str]: ...
 def preset_names(method: str) -> list[str]: ...

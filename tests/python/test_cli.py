@@ -25,6 +25,8 @@ Cli = Callable[..., Result]
 
 COMMANDS = (
     ("database", "build"),
+    ("database", "add"),
+    ("database", "drop"),
     ("database", "info"),
     ("convert",),
     ("simulate",),

@@ -40,13 +40,16 @@ def test_an_unknown_name_is_an_attribute_error() -> None:
 def test_the_core_has_every_function_and_class_of_its_stub() -> None:
     names = [node.name for node in stub().body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
     assert len(names) > 20
-    assert [name for name in names if not hasattr(_core, name)] == []
+    public = [name for name in names if not name.startswith("_")]
+    assert [name for name in public if not hasattr(_core, name)] == []
 
 
 def test_the_core_has_every_member_of_its_stub() -> None:
     missing = []
     for node in stub().body:
         if not isinstance(node, ast.ClassDef) or node.name.endswith(("Error", "Cancelled")):
+            continue
+        if node.name.startswith("_"):  # a type of the stub alone
             continue
         for member in node.body:
             if isinstance(member, ast.FunctionDef):

@@ -10,7 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import Result
-from sparse_mocap import MotionDatabase, read_motion, read_positions, standard_motion
+from sparse_mocap import (
+    MotionDatabase,
+    build_database,
+    read_motion,
+    read_positions,
+    standard_motion,
+)
 from sparse_mocap.evaluation import performed
 from sparse_mocap.evaluation.protocol import is_copy
 
@@ -36,6 +42,23 @@ def test_both_formats_of_a_cmu_trial_are_one_motion(
         assert frames >= max(map(len, tables)) - 1  # a leading rest pose is dropped
         difference = np.linalg.norm(tables[0][-frames:] - tables[1][-frames:], axis=2)
         assert difference.max() < 1e-3
+
+
+def test_both_formats_of_a_cmu_trial_are_taken_once(real_data: Path, tmp_path: Path) -> None:
+    amc = sorted((real_data / "cmu" / "asf_amc").glob("02_*.amc"))
+    bvh = sorted((real_data / "cmu" / "bvh").glob("*.bvh"))
+    both = {path.stem for path in amc} & {path.stem for path in bvh}
+    assert both
+    report = build_database([*amc, *bvh], tmp_path / "db.smdb", tempo_copies=())
+    assert {Path(path).stem for path, _ in report.duplicates} == both
+    for path, reason in report.duplicates:
+        assert reason.endswith(f": the same motion as {Path(path).stem}.amc")
+
+
+def test_repetitions_are_no_duplicates(real_data: Path, tmp_path: Path) -> None:
+    report = build_database([real_data / "hdm05"], tmp_path / "db.smdb", tempo_copies=())
+    assert report.num_files == 233
+    assert report.duplicates == []
 
 
 @pytest.fixture(scope="module")
