@@ -11,6 +11,7 @@ from ..scene.settings import settings_of
 from ..session.database import SUFFIX, build_job, checked_output, databases, default_output
 from ..session.errors import one_line
 from ..session.job import Job
+from ..session.steps import Steps
 from .job_operator import JobOperator
 
 SKIP = {"SKIP_SAVE"}
@@ -107,8 +108,9 @@ class SPARSEMOCAP_OT_build_database(JobOperator, Operator):
         )
         return job
 
-    def apply(self, context: Context, result: Any) -> str:
+    def apply(self, context: Context, result: Any) -> Steps[str]:
         """Use the new database."""
+        yield 0.0
         settings_of(context.scene).database = self._path
         skipped = f", {len(result.skipped)} left out" if result.skipped else ""
         return (

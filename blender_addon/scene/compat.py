@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import bpy
-from bpy.types import Action, Context, FCurve, Object, UILayout
+from bpy.types import Action, Context, FCurve, Header, Object, UILayout
 from bpy_extras import anim_utils
 
 SLOT_NAME = "Sparse Mocap"  # one name, so that takes can be swapped on an armature
@@ -64,6 +64,28 @@ def is_busy(context: Context) -> bool:
     """Whether nothing may be changed just now: a render, or a stroke or drag of the user's."""
     at_work: Any = getattr(context.window, "modal_operators", ())
     return is_rendering() or any(tool.bl_idname.startswith(_DRAGS) for tool in at_work)
+
+
+def show_status(context: Context, text: str, fraction: float) -> None:
+    """Say in the status bar of all windows what is at work, how far it is and how to stop it."""
+
+    def draw(header: Header, _: Context) -> None:
+        row = header.layout.row()
+        if HAS_PROGRESS_BAR:
+            row.label(text=text)
+            row.progress(factor=fraction, text=f"{fraction:.0%}")
+        else:
+            row.label(text=f"{text}: {fraction:.0%}", icon="SORTTIME")
+        row.label(text="Cancel", icon="EVENT_ESC")
+
+    if context.workspace is not None:
+        context.workspace.status_text_set(draw)
+
+
+def clear_status(context: Context) -> None:
+    """Blender's own status bar again."""
+    if context.workspace is not None:
+        context.workspace.status_text_set(None)
 
 
 def redraw_views(context: Context) -> None:
