@@ -9,7 +9,7 @@ from typing import Any
 
 import bpy
 import numpy as np
-from bpy.types import Action, FCurve, Keyframe, Object, Scene
+from bpy.types import Action, FCurve, Keyframe, Scene
 from numpy.typing import NDArray
 
 from ..session.steps import finished

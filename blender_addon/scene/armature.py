@@ -14,6 +14,7 @@ from bpy.types import Armature, Context, Object, Scene
 from mathutils import Vector
 
 from ..session.errors import InputError
+from ..session.names import fitting
 from .axes import Floats, rest_pivots_and_ends, to_blender
 
 MARK = "sparse_mocap"  # custom property of armatures that this add-on made
@@ -46,7 +47,7 @@ class Rig:
 
     armature: Object
     bones: list[str]
-    """The names of the joints' bones: Blender shortens names of more than 63 bytes."""
+    """The joints' bones by name: the joint's own unless that is too long for Blender."""
     units_per_metre: float
 
 
@@ -58,12 +59,15 @@ def rest_bones(skeleton: Any) -> RestBones:
     size = size_m / _USUAL_HEIGHT_M or 1.0
     tails = np.array([_tail(joint, parents, pivots, ends, size) for joint in range(len(parents))])
     lift = -min(pivots[:, 1].min(), ends[:, 1].min()) * _UP
-    return RestBones(names, parents, pivots + lift, tails + lift)
+    return RestBones(fitting(names), parents, pivots + lift, tails + lift)
 
 
-def new_armature(context: Context, skeleton: Any, name: str = NAME) -> Rig:
+def new_armature(
+    context: Context, skeleton: Any, name: str = NAME, *, is_standard: bool = True
+) -> Rig:
     """A new armature of the skeleton in the scene, active and alone selected.
 
+    is_standard: whether takes may be put onto it later.
     Raises InputError when the scene cannot take one; nothing is left behind then.
     """
     _leave_mode(context)
@@ -75,16 +79,18 @@ def new_armature(context: Context, skeleton: Any, name: str = NAME) -> Rig:
         select_only(context, armature)
         bpy.ops.object.mode_set(mode="EDIT")
         try:
-            bones = _add_bones(data, rest_bones(skeleton), scale)
+            bones = rest_bones(skeleton)
+            _add_bones(data, bones, scale)
         finally:
             bpy.ops.object.mode_set(mode="OBJECT")
     except Exception:
         remove_armature(armature)
         raise
     use_quaternions(armature)
-    data[MARK] = ",".join(skeleton.names)
+    if is_standard:
+        data[MARK] = ",".join(skeleton.names)
     armature.show_in_front = True
-    return Rig(armature, bones, scale)
+    return Rig(armature, bones.names, scale)
 
 
 def remove_armature(armature: Object) -> None:
@@ -106,6 +112,7 @@ def selection_back_on_error(context: Context) -> Iterator[None]:
         yield
     except BaseException:
         layer = context.view_layer
+        layer.update()  # what was removed is still in its list otherwise
         for obj in layer.objects:
             obj.select_set(obj.name in names)
         layer.objects.active = layer.objects.get(active_name)
@@ -231,8 +238,8 @@ def _tail(joint: int, parents: list[int], pivots: Floats, ends: Floats, size: fl
     return pivots[joint] + size * _LEAF_LENGTH_M * direction
 
 
-def _add_bones(data: Armature, bones: RestBones, scale: float) -> list[str]:
-    """Make the bones and return the names that Blender gave them; data is in edit mode."""
+def _add_bones(data: Armature, bones: RestBones, scale: float) -> None:
+    """Make the bones; data is in edit mode."""
     made = []
     for name, parent, head, tail in zip(
         bones.names,
@@ -247,4 +254,3 @@ def _add_bones(data: Armature, bones: RestBones, scale: float) -> list[str]:
         if parent >= 0:
             bone.parent = made[parent]
         made.append(bone)
-    return [bone.name for bone in made]

@@ -13,6 +13,7 @@ from bpy_extras import anim_utils
 SLOT_NAME = "Sparse Mocap"  # one name, so that takes can be swapped on an armature
 
 HAS_PROGRESS_BAR = "progress" in UILayout.bl_rna.functions
+HAS_FILE_HANDLERS = hasattr(bpy.types, "FileHandler")  # what takes files dropped on a window
 
 _DRAGS = ("TRANSFORM_OT_", "SCULPT_OT_", "PAINT_OT_", "GPENCIL_OT_", "GREASE_PENCIL_OT_")
 
@@ -55,6 +56,25 @@ def assign_action(obj: Object, action: Action) -> None:
         data.action_slot = action.slots[0]
 
 
+def file_handler(name: str, label: str, operator: str, endings: str) -> type:
+    """A class that offers the operator when files with one of the endings are dropped on a view."""
+
+    def poll_drop(cls: type, context: Context) -> bool:
+        return context.area is not None and context.area.type == "VIEW_3D"
+
+    return type(
+        name,
+        (bpy.types.FileHandler,),
+        {
+            "bl_idname": name,
+            "bl_label": label,
+            "bl_import_operator": operator,
+            "bl_file_extensions": endings,
+            "poll_drop": classmethod(poll_drop),
+        },
+    )
+
+
 def is_rendering() -> bool:
     """Whether a render is at work: nothing may be changed then."""
     return bpy.app.is_job_running("RENDER")
@@ -89,8 +109,8 @@ def clear_status(context: Context) -> None:
 
 
 def redraw_views(context: Context) -> None:
-    """Draw all 3D views' sidebars anew."""
+    """Draw all 3D views' sidebars and the file browsers anew."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
-            if area.type == "VIEW_3D":
+            if area.type in ("VIEW_3D", "FILE_BROWSER"):
                 area.tag_redraw()
