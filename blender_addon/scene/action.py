@@ -33,7 +33,7 @@ def action_steps(
     """A new action in which the rig moves as the motion does, made step by step.
 
     motion: a sparse_mocap.Motion or session.imported.LoadedMotion on the rig's skeleton; frames
-    (T,): where the keys stand. Yields the share that is done after each curve. Raises ValueError
+    (T,): where the keys stand. Yields the share that is done, after each curve. Raises ValueError
     when the motion has numbers that are none; nothing is left behind then, nor when it is closed.
     """
     places, rotations = _places(motion), np.asarray(motion.rotations)
@@ -53,6 +53,7 @@ def action_steps(
                 moved = to_blender(places[joint]) * rig.units_per_metre
                 origin = heads[joint] if joint == 0 else 0.0
                 tracks = {LOCATION: (moved - origin) @ rest[joint], ROTATION: turned}
+            yield joint / len(rig.bones)
             for what, track in tracks.items():
                 for index, values in enumerate(track.T):
                     action.name  # noqa: B018 - raises ReferenceError when an undo took it

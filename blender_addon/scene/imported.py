@@ -37,8 +37,8 @@ def import_steps(
                     context, motion.skeleton, motion.name, is_standard=motion.is_standard
                 )
                 made.append(rig.armature)
+                yield (len(made) - 1) * share
                 if motion.num_frames == 0:
-                    yield len(made) * share
                     continue
                 times_s = np.arange(motion.num_frames) * motion.frame_time_s
                 frames = frames_of(context.scene, times_s, start_frame)

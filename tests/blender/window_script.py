@@ -99,10 +99,7 @@ def escape() -> Steps:
     job = start_building()
     yield 0.15
     assert job.is_running
-    window = bpy.context.window_manager.windows[0]
-    for value in ("PRESS", "RELEASE"):
-        window.event_simulate(type="ESC", value=value, x=200, y=200)
-        yield 0.05
+    yield from press_escape()
     yield from until(lambda: not job.is_running)
     yield 0.3
     assert job.is_cancelled
@@ -176,7 +173,96 @@ def adjust_afterwards() -> Steps:
     assert bpy.data.actions[0].frame_range[0] == 11.0
 
 
+def press_escape() -> Steps:
+    window = bpy.context.window_manager.windows[0]
+    for value in ("PRESS", "RELEASE"):
+        window.event_simulate(type="ESC", value=value, x=200, y=200)
+        yield 0.05
+
+
+def large_file() -> str:
+    """A .bvh of 100 joints and 4,000 frames."""
+    path = Path(FOLDER) / "large.bvh"
+    lines, channels = ["HIERARCHY"], "CHANNELS 3 Zrotation Xrotation Yrotation"
+    for index in range(100):
+        word, offset = ("JOINT", "0 2 0") if index else ("ROOT", "0 90 0")
+        lines += [f"{word} j{index}", "{", f"OFFSET {offset}", channels]
+    lines += ["}"] * 100 + ["MOTION", "Frames: 4000", "Frame Time: 0.01"]
+    lines += [" ".join([f"{0.01 * row:.2f}"] * 300) for row in range(4000)]
+    path.write_text("\n".join(lines))
+    return str(path)
+
+
+def confirm_dialog() -> Steps:
+    """Enter, with the pointer on the dialog that has just come up under it."""
+    window = bpy.context.window_manager.windows[0]
+    yield 0.3
+    for value in ("PRESS", "RELEASE"):
+        window.event_simulate(type="RET", value=value, x=400, y=400)
+        yield 0.1
+
+
+def begin_import(path: str) -> Steps:
+    """Through the dialog that a dropped file opens."""
+    window = bpy.context.window_manager.windows[0]
+    window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=400, y=400)
+    yield 0.2
+    folder, name = str(Path(path).parent), Path(path).name
+    with bpy.context.temp_override(**view()):
+        bpy.ops.ed.undo_push(message="before")
+        done = bpy.ops.sparse_mocap.import_bvh(
+            "INVOKE_DEFAULT", True, directory=folder, files=[{"name": name}]
+        )
+    assert done == {"RUNNING_MODAL"}
+    yield from confirm_dialog()
+
+
+def import_dropped() -> Steps:
+    before = [item.name for item in bpy.data.objects]
+    yield from begin_import(large_file())
+    num_halfway = 0
+    while not any(item.animation_data for item in bpy.data.objects):
+        num_halfway += len(bpy.data.actions)
+        yield 0.01
+    assert num_halfway > 3, "the window stood still while keys were set"
+    yield 0.3
+    action = bpy.data.actions["large"]
+    assert bpy.context.view_layer.objects.active.animation_data.action == action
+    assert jobs.current() is None
+    undo()
+    yield 0.1
+    assert [item.name for item in bpy.data.objects] == before
+    assert not bpy.data.actions
+
+
+def import_escaped() -> Steps:
+    before = [item.name for item in bpy.data.objects]
+    active = bpy.context.view_layer.objects.active.name
+    yield from begin_import(large_file())
+    yield from until(lambda: len(bpy.data.actions) == 1)
+    assert len(bpy.data.armatures) == 1
+    yield from press_escape()
+    yield 0.3
+    assert not bpy.data.actions
+    assert not bpy.data.armatures
+    assert [item.name for item in bpy.data.objects] == before
+    assert bpy.context.view_layer.objects.active.name == active
+
+
+def import_undone_meanwhile() -> Steps:
+    before = [item.name for item in bpy.data.objects]
+    yield from begin_import(large_file())
+    yield from until(lambda: len(bpy.data.actions) == 1)
+    undo()
+    yield 0.5
+    assert not bpy.data.actions
+    assert [item.name for item in bpy.data.objects] == before
+
+
 SCENARIOS = {
+    "import": import_dropped,
+    "import_escaped": import_escaped,
+    "import_undone": import_undone_meanwhile,
     "reconstruct": reconstruct,
     "escape": escape,
     "cancel": cancel,
