@@ -4,13 +4,15 @@
 
 def register() -> None:
     """Give scenes their settings."""
-    from . import settings
+    from . import clips, settings
 
     settings.register()
+    clips.register()
 
 
 def unregister() -> None:
     """Take the settings away."""
-    from . import settings
+    from . import clips, settings
 
+    clips.unregister()
     settings.unregister()

@@ -172,7 +172,7 @@ def reusable_armature(context: Context) -> Object:
         raise InputError('There is no Sparse Mocap armature to reuse: untick "Reuse armature"')
     if len(candidates) > 1:
         raise InputError("Select the Sparse Mocap armature that is to get the take")
-    return _editable(candidates[0])
+    return editable(candidates[0])
 
 
 def select_only(context: Context, obj: Object) -> None:
@@ -182,7 +182,8 @@ def select_only(context: Context, obj: Object) -> None:
     context.view_layer.objects.active = obj
 
 
-def _editable(armature: Object) -> Object:
+def editable(armature: Object) -> Object:
+    """The armature. Raises InputError when it may not be changed now."""
     name = armature.name
     if armature.library is not None:
         raise InputError(f'"{name}" is linked from another file: make it local first')

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from .clips import ClipTable, table_of
 from .core import core
 from .errors import InputError
 from .job import Job, Progress
@@ -22,6 +23,7 @@ class Database:
     """An opened motion database and what the animator sees of it."""
 
     motions: Any  # sparse_mocap.MotionDatabase
+    clips: ClipTable
     num_clips: int
     num_sources: int
     minutes: float
@@ -35,6 +37,7 @@ def open_database(path: str) -> Database:
     clips = motions.clips
     return Database(
         motions=motions,
+        clips=table_of(clips, motions.rate_hz),
         num_clips=len(clips),
         num_sources=len({clip.source for clip in clips}),
         minutes=motions.num_frames / motions.rate_hz / 60.0,

@@ -3,10 +3,10 @@
 
 import bpy
 
-from . import database, import_motion, reconstruct, take
-from .step import forget_redraw
+from . import clips, database, import_motion, reconstruct, take
+from .step import forget_timers
 
-CLASSES = (*database.CLASSES, *take.CLASSES, *reconstruct.CLASSES)
+CLASSES = (*database.CLASSES, *clips.CLASSES, *take.CLASSES, *reconstruct.CLASSES)
 
 
 def register() -> None:
@@ -18,7 +18,7 @@ def register() -> None:
 
 def unregister() -> None:
     """Take the panels away."""
-    forget_redraw()
+    forget_timers()
     import_motion.unregister()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)
