@@ -10,7 +10,7 @@ from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatPrope
 from bpy.types import Context, Event, Operator, OperatorFileListElement
 
 from ..scene.imported import import_steps
-from ..session.imported import ACCLAIM, BVH, LoadedMotion, Reading, import_job
+from ..session.imported import ACCLAIM, BVH, LoadedMotion, Reading, glances, import_job
 from ..session.job import Job
 from ..session.steps import Steps
 from ..ui.import_motion import UNITS, UP_AXES, draw_options, unit_m
@@ -19,6 +19,7 @@ from .job_operator import JobOperator
 FILES = {"HIDDEN", "SKIP_SAVE"}
 _MOST_WARNINGS = 5
 _DIALOG_PX = 340
+_GLANCE_S = 0.5
 
 
 class ImportOperator(JobOperator):
@@ -59,6 +60,8 @@ class ImportOperator(JobOperator):
             return self.execute(context)
         self._asks = True
         if self.paths():
+            glances.peek(self.paths()[0])
+            glances.wait(_GLANCE_S)  # a dialog is not drawn anew when the file is read
             return context.window_manager.invoke_props_dialog(self, width=_DIALOG_PX)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}

@@ -135,6 +135,8 @@ class JobOperator:
         if slices is not None:
             slices.close()
         timer, self._timer = self._timer, None
+        if timer is None:
+            return  # a dialog that was left
         with suppress(ReferenceError, AttributeError):  # the window may be gone
             manager = context.window_manager
             manager.event_timer_remove(timer)

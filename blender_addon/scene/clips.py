@@ -6,7 +6,14 @@ from __future__ import annotations
 from weakref import ref
 
 import bpy
-from bpy.props import BoolProperty, CollectionProperty, EnumProperty, IntProperty, PointerProperty
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
 from bpy.types import Context, PropertyGroup, WindowManager
 
 from ..session.database import Database, databases
@@ -30,6 +37,11 @@ class SPARSEMOCAP_PG_clip_list(PropertyGroup):
 
     items: CollectionProperty(type=SPARSEMOCAP_PG_clip)
     index: IntProperty(name="Clip", options={"SKIP_SAVE"})
+    search: StringProperty(
+        name="Search",
+        description="Words that are in the clip's name, actor or class",
+        options={"TEXTEDIT_UPDATE", "SKIP_SAVE"},
+    )
     sort: EnumProperty(name="Sort", description="What the list is sorted by", items=_SORTS)
     shows_copies: BoolProperty(
         name="Copies",

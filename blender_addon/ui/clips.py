@@ -40,27 +40,14 @@ class SPARSEMOCAP_UL_clips(UIList):
         if database is None or index >= len(database.clips.rows):
             return
         row = database.clips.rows[index]
-        split = layout.split(factor=0.6)
-        split.label(text=row.label)
-        split = split.split(factor=0.4)
-        split.label(text=row.actor)
-        line = split.row(align=True)
-        line.alignment = "RIGHT"
-        line.label(text=f"{row.length_s:.1f} s")
+        line = layout.row(align=True)
         button = line.operator("sparse_mocap.preview_clip", text="", icon="PLAY", emboss=False)
         button.index = index
-
-    def draw_filter(self, context: Context, layout: UILayout) -> None:
-        """Search, sorting and whether copies are listed."""
-        shown = clip_list(context)
-        column = layout.column(align=True)
-        column.prop(self, "filter_name", text="", icon="VIEWZOOM")
-        row = column.row(align=True)
-        row.prop(shown, "sort", expand=True)
-        row.prop(self, "use_filter_sort_reverse", text="", icon="SORT_DESC", toggle=True)
-        database = opened_database(context)
-        if database is not None and database.clips.has_copies:
-            column.prop(shown, "shows_copies", text="Mirrored and other copies too")
+        split = line.split(factor=0.56)
+        split.label(text=row.label)
+        split = split.split(factor=0.45)
+        split.label(text=row.actor)
+        split.label(text=f"{row.length_s:.1f} s")
 
     def filter_items(
         self, context: Context, data: Any, propname: str
@@ -71,10 +58,10 @@ class SPARSEMOCAP_UL_clips(UIList):
             return [], []
         shown = clip_list(context)
         bit = self.bitflag_filter_item
-        chosen = database.clips.chosen(self.filter_name, shown.shows_copies)
-        return [bit if is_chosen else 0 for is_chosen in chosen], list(
-            database.clips.order(shown.sort)
-        )
+        text = f"{shown.search} {self.filter_name}"
+        chosen = database.clips.chosen(text, shown.shows_copies)
+        order = database.clips.order(shown.sort)
+        return [bit if is_chosen else 0 for is_chosen in chosen], list(order)
 
 
 class SPARSEMOCAP_PT_clips(StepPanel, Panel):
@@ -97,6 +84,11 @@ class SPARSEMOCAP_PT_clips(StepPanel, Panel):
             later(_fill)
             return
         shown = clip_list(context)
+        row = self.layout.row(align=True)
+        row.prop(shown, "search", text="", icon="VIEWZOOM")
+        row.prop(shown, "sort", text="", icon="SORTSIZE", icon_only=True)
+        if database.clips.has_copies:
+            row.prop(shown, "shows_copies", text="", icon="MOD_MIRROR")
         self.layout.template_list(
             SPARSEMOCAP_UL_clips.bl_idname, "", shown, "items", shown, "index", rows=_ROWS
         )
@@ -107,20 +99,18 @@ def _draw_marked(layout: UILayout, context: Context, database: Database) -> None
     index = clip_list(context).index
     if index >= len(database.clips.rows):
         return
-    playing = context.screen is not None and context.screen.is_animation_playing
     row = layout.row(align=True)
     row.operator("sparse_mocap.preview_clip", icon="PLAY").index = index
-    row.operator(
-        "screen.animation_play",
-        text="Pause" if playing else "Resume",
-        icon="PAUSE" if playing else "FRAME_NEXT",
-    )
     name = clip_in_preview(context.scene)
-    if name:
-        text.paragraph(layout, context, f"In the viewport: {name}")
-        row = layout.row(align=True)
-        row.operator("sparse_mocap.fit_preview_range", icon="PREVIEW_RANGE")
-        row.operator("sparse_mocap.keep_preview", icon="CHECKMARK")
+    if not name:
+        return
+    is_playing = context.screen is not None and context.screen.is_animation_playing
+    icon = "PAUSE" if is_playing else "FRAME_NEXT"
+    row.operator("screen.animation_play", text="Pause" if is_playing else "Resume", icon=icon)
+    row = layout.row(align=True)
+    row.operator("sparse_mocap.fit_preview_range", icon="PREVIEW_RANGE")
+    row.operator("sparse_mocap.keep_preview", icon="CHECKMARK")
+    text.paragraph(layout, context, f"In the viewport: {name}")
 
 
 def _fill() -> None:

@@ -75,7 +75,7 @@ def _build_form(
     column.use_property_decorate = False
     for name, label in (("mirror", "Mirrored"), ("reverse", "Reversed"), ("tempos", "Tempos")):
         column.prop(settings, name, text=label)
-    column.prop(settings, "strict")
+    column.prop(settings, "strict", text="Strict")
     if settings.source and not settings.output:
         path = default_output(bpy.path.abspath(settings.source))
         text.paragraph(box, context, f"Writes {path}")
@@ -110,7 +110,9 @@ def _outcome(layout: UILayout, context: Context) -> None:
     line = ", ".join(f"{count} {what}" for count, what in counts if count)
     text.paragraph(box, context, f"{summary.num_files} files: {line}", icon="INFO")
     for name, reason in summary.skipped[:_MOST_SHOWN]:
-        text.paragraph(box, context, text.shortened(f"{os.path.basename(name)}: {reason}"))
+        base = os.path.basename(name)
+        reason = reason.removeprefix(name).lstrip(": ")
+        text.paragraph(box, context, text.shortened(f"{base}: {reason}"))
     more = len(summary.skipped) - _MOST_SHOWN
     if more > 0:
         text.paragraph(box, context, f"and {more} more")

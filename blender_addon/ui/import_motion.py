@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import bpy
@@ -42,6 +43,10 @@ def draw_options(operator: Any, context: Context) -> None:
     layout = operator.layout
     layout.use_property_split = True
     layout.use_property_decorate = False
+    paths = operator.paths()
+    if context.area is None or context.area.type != "FILE_BROWSER":
+        name = os.path.basename(paths[0]) if len(paths) == 1 else f"{len(paths)} files"
+        layout.label(text=name, icon="FILE")
     column = layout.column()
     column.prop(operator, "unit")
     column.row().prop(operator, "up_axis", expand=True)
