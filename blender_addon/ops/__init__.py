@@ -10,11 +10,12 @@ from ..session import job
 from ..session.database import databases
 from ..session.imported import glances
 from ..session.take import takes
-from . import clips, database, import_motion, job_operator, reconstruct, take
+from . import clips, database, import_motion, job_operator, mapping, reconstruct, take
 
 CLASSES = (
     *job_operator.CLASSES,
     *import_motion.CLASSES,
+    *mapping.CLASSES,
     *database.CLASSES,
     *clips.CLASSES,
     *take.CLASSES,

@@ -10,8 +10,10 @@ from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatPrope
 from bpy.types import Context, Event, Operator, OperatorFileListElement
 
 from ..scene.imported import import_steps
+from ..scene.mapping import show_mapping
 from ..session.imported import ACCLAIM, BVH, LoadedMotion, Reading, glances, import_job
 from ..session.job import Job
+from ..session.mapping import last_mapped
 from ..session.steps import Steps
 from ..ui.import_motion import UNITS, UP_AXES, draw_options, unit_m
 from .job_operator import JobOperator
@@ -77,6 +79,11 @@ class ImportOperator(JobOperator):
         """The options, and what they make of the file."""
         draw_options(self, context)
 
+    def _failed(self, error: Exception) -> set[str]:
+        if last_mapped and last_mapped[0].problem:
+            show_mapping(bpy.context, last_mapped[0])  # to be mended there
+        return super()._failed(error)
+
     def paths(self) -> list[str]:
         """The chosen files."""
         folder = bpy.path.abspath(self.directory)
@@ -103,6 +110,7 @@ class ImportOperator(JobOperator):
             self.start_frame,
             keeps_timing=self.keep_timing,
         )
+        show_mapping(context, result[-1].mapped)
         warnings = [warning for motion in result for warning in motion.warnings]
         for warning in warnings[:_MOST_WARNINGS]:
             self.report({"WARNING"}, warning)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from .core import core
 from .errors import InputError
 from .job import Cancelled, Job, Progress
+from .mapping import Mapped, last_mapped, mapped
 from .opened import Shelf
 
 IMPORTING = "Importing"
@@ -48,6 +49,8 @@ class LoadedMotion:
     warnings: list[str]
     is_standard: bool
     """Whether it is on the standard skeleton."""
+    mapped: Mapped
+    """The file's skeleton, and where its body was found."""
 
     @property
     def num_frames(self) -> int:
@@ -108,12 +111,15 @@ def load_motion(path: str, reading: Reading, asf: str | None = None) -> LoadedMo
         asf=asf,
         allow_no_frames=True,
     )
+    name = Path(path).stem
+    found = mapped(name, motion)
+    last_mapped[:] = [found]
     is_standard = reading.is_standard and motion.num_frames > 0
     if is_standard:
-        motion, more = sparse_mocap.standard_motion(motion)
+        motion, more = sparse_mocap.to_standard(motion)
         warnings = warnings + more
     return LoadedMotion(
-        name=Path(path).stem,
+        name=name,
         skeleton=motion.skeleton,
         frame_time_s=motion.frame_time_s,
         root_positions=motion.root_positions,
@@ -121,6 +127,7 @@ def load_motion(path: str, reading: Reading, asf: str | None = None) -> LoadedMo
         offset_tracks=motion.offset_tracks,
         warnings=warnings,
         is_standard=is_standard,
+        mapped=found,
     )
 
 

@@ -3,10 +3,16 @@
 
 import bpy
 
-from . import clips, database, import_motion, reconstruct, take
+from . import clips, database, import_motion, mapping, reconstruct, take
 from .step import forget_timers
 
-CLASSES = (*database.CLASSES, *clips.CLASSES, *take.CLASSES, *reconstruct.CLASSES)
+CLASSES = (
+    *database.CLASSES,
+    *clips.CLASSES,
+    *take.CLASSES,
+    *reconstruct.CLASSES,
+    *mapping.CLASSES,
+)
 
 
 def register() -> None:
