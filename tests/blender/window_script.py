@@ -181,14 +181,14 @@ def press_escape() -> Steps:
 
 
 def large_file() -> str:
-    """A .bvh of 100 joints and 4,000 frames."""
+    """A .bvh of 40 joints and 8,000 frames."""
     path = Path(FOLDER) / "large.bvh"
     lines, channels = ["HIERARCHY"], "CHANNELS 3 Zrotation Xrotation Yrotation"
-    for index in range(100):
+    for index in range(40):
         word, offset = ("JOINT", "0 2 0") if index else ("ROOT", "0 90 0")
         lines += [f"{word} j{index}", "{", f"OFFSET {offset}", channels]
-    lines += ["}"] * 100 + ["MOTION", "Frames: 4000", "Frame Time: 0.01"]
-    lines += [" ".join([f"{0.01 * row:.2f}"] * 300) for row in range(4000)]
+    lines += ["}"] * 40 + ["MOTION", "Frames: 8000", "Frame Time: 0.01"]
+    lines += [" ".join([f"{0.01 * row:.2f}"] * 120) for row in range(8000)]
     path.write_text("\n".join(lines))
     return str(path)
 
@@ -259,7 +259,84 @@ def import_undone_meanwhile() -> Steps:
     assert [item.name for item in bpy.data.objects] == before
 
 
+def until_imported(before: list[str]) -> Steps:
+    yield from until(lambda: any(item.animation_data for item in bpy.data.objects))
+    yield 0.3
+    assert len(bpy.data.actions) == 1
+    undo()
+    yield 0.1
+    assert [item.name for item in bpy.data.objects] == before
+
+
+def import_chosen() -> Steps:
+    """Through File > Import and the file browser."""
+    path, before = large_file(), [item.name for item in bpy.data.objects]
+    with bpy.context.temp_override(**view()):
+        bpy.ops.ed.undo_push(message="before")
+        bpy.ops.sparse_mocap.import_bvh("INVOKE_DEFAULT", True)
+    yield 1.0
+    windows = bpy.context.window_manager.windows
+    found = [(w, a) for w in windows for a in w.screen.areas if a.type == "FILE_BROWSER"]
+    window, area = found[0]
+    area.spaces.active.params.directory = os.path.dirname(path).encode()
+    area.spaces.active.params.filename = os.path.basename(path)
+    yield 0.5
+    with bpy.context.temp_override(window=window, area=area, region=area.regions[-1]):
+        bpy.ops.file.execute()
+    yield from until_imported(before)
+
+
+def import_left() -> Steps:
+    """The dialog is left: nothing happens."""
+    before = [item.name for item in bpy.data.objects]
+    folder, name = str(Path(MOTIONS)), next(Path(MOTIONS).iterdir()).name
+    with bpy.context.temp_override(**view()):
+        bpy.ops.sparse_mocap.import_bvh(
+            "INVOKE_DEFAULT", True, directory=folder, files=[{"name": name}]
+        )
+    yield 0.5
+    yield from press_escape()
+    yield 0.3
+    assert jobs.current() is None
+    assert [item.name for item in bpy.data.objects] == before
+
+
+def dropped() -> Steps:
+    """As if the file were dropped on the viewport."""
+    if not hasattr(bpy.ops.wm, "drop_import_file") or not hasattr(bpy.types, "FileHandler"):
+        return
+    path, before = large_file(), [item.name for item in bpy.data.objects]
+    window = bpy.context.window_manager.windows[0]
+    window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=400, y=400)
+    yield 0.2
+    with bpy.context.temp_override(**view()):
+        bpy.ops.ed.undo_push(message="before")
+        bpy.ops.wm.drop_import_file(
+            "INVOKE_DEFAULT",
+            directory=os.path.dirname(path),
+            files=[{"name": os.path.basename(path)}],
+        )
+    yield from confirm_dialog()
+    yield from until_imported(before)
+
+
+def preview_plays() -> Steps:
+    bpy.context.scene.sparse_mocap.database = DATABASE
+    with bpy.context.temp_override(**view()):
+        bpy.ops.ed.undo_push(message="chosen")
+        done = bpy.ops.sparse_mocap.preview_clip("INVOKE_DEFAULT", True, index=1)
+    assert done == {"FINISHED"}
+    yield 0.2
+    assert bpy.data.objects["Clip Preview"].animation_data.action
+    yield from until(lambda: bpy.context.scene.frame_current > 2)
+    assert bpy.context.window_manager.windows[0].screen.is_animation_playing
+
+
 SCENARIOS = {
+    "preview": preview_plays,
+    "dropped": dropped,
+    "import_chosen": import_chosen,
+    "import_left": import_left,
     "import": import_dropped,
     "import_escaped": import_escaped,
     "import_undone": import_undone_meanwhile,
