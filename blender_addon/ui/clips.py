@@ -19,10 +19,9 @@ _ROWS = 6
 
 
 class SPARSEMOCAP_UL_clips(UIList):
-    """One line a clip: name, actor, seconds, and a button that plays it."""
+    """One line a clip: name, actor, seconds."""
 
     bl_idname = "SPARSEMOCAP_UL_clips"
-    use_filter_show = True
 
     def draw_item(
         self,
@@ -40,12 +39,9 @@ class SPARSEMOCAP_UL_clips(UIList):
         if database is None or index >= len(database.clips.rows):
             return
         row = database.clips.rows[index]
-        line = layout.row(align=True)
-        button = line.operator("sparse_mocap.preview_clip", text="", icon="PLAY", emboss=False)
-        button.index = index
-        split = line.split(factor=0.56)
+        split = layout.split(factor=0.58, align=True)
         split.label(text=row.label)
-        split = split.split(factor=0.45)
+        split = split.split(factor=0.45, align=True)
         split.label(text=row.actor)
         split.label(text=f"{row.length_s:.1f} s")
 
