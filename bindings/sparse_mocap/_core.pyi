@@ -66,6 +66,9 @@ class Motion:
     @property
     def rotations(self) -> Floats:
         """(T, J, 4) rotation of each joint relative to its parent, w x y z."""
+    @property
+    def offset_tracks(self) -> list[tuple[int, Floats]]:
+        """Joints that the file moves besides the root, and (T, 3) m their offset in every frame."""
     def joint_positions(self, frame: str = "world") -> Floats:
         """(T, J, 3) m, the joints' ends; frame: 'heading' (standard skeleton), 'root', 'world'."""
     def pivot_positions(self) -> Floats:
@@ -75,8 +78,21 @@ class Motion:
     def reversed(self) -> Motion: ...
     def mirrored(self) -> Motion: ...
 
-def read_motion(path: Path, *, amc_rate_hz: float = 120.0) -> tuple[Motion, list[str]]:
-    """The file's motion on its own skeleton, and warnings. Raises FormatError."""
+def read_motion(
+    path: Path,
+    *,
+    amc_rate_hz: float = 120.0,
+    unit_m: float | None = None,
+    up: str = "y",
+    asf: Path | None = None,
+    allow_no_frames: bool = False,
+) -> tuple[Motion, list[str]]:
+    """The file's motion on its own skeleton, and warnings. Raises FormatError.
+
+    unit_m: metres a unit of the file (None: what an .asf says, 0.01 for .bvh); up: the file's up
+    axis, what is read has y up; asf: the skeleton of an .amc (None: the one found beside it). With
+    allow_no_frames a skeleton alone, also an .asf, is a motion without frames.
+    """
 
 def write_bvh(path: Path, motion: Motion) -> None:
     """Writes atomically, in centimetres."""

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common.hpp"
+#include "sparse_mocap/base/text_scanner.hpp"
+#include "sparse_mocap/formats/acclaim.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
 #include "sparse_mocap/motion/heading.hpp"
@@ -37,6 +39,19 @@ py::array_t<double> rotations(const Motion& motion) {
     }
   }
   return out;
+}
+
+// The joints that the file moves besides the root, and where to.
+std::vector<std::pair<int, py::array_t<double>>> offset_tracks(const Motion& motion) {
+  std::vector<std::pair<int, py::array_t<double>>> tracks;
+  for (const auto& track : motion.offset_tracks) {
+    auto out = new_array({motion.num_frames(), 3});
+    auto rows = out.mutable_unchecked<2>();
+    for (int t = 0; t < motion.num_frames(); ++t)
+      for (int k = 0; k < 3; ++k) rows(t, k) = track.offset_parent[static_cast<std::size_t>(t)][k];
+    tracks.emplace_back(track.joint, std::move(out));
+  }
+  return tracks;
 }
 
 Motion make_motion(const Skeleton& skeleton, double frame_time_s, const Doubles& positions,
@@ -80,11 +95,64 @@ py::array_t<double> positions_of(const Motion& motion, const std::string& frame_
   return out;
 }
 
-std::pair<Motion, std::vector<std::string>> read_motion(const std::filesystem::path& path,
-                                                        double amc_rate_hz) {
+// The same movement with lengths and world axes changed: every frame of the skeleton turns along.
+void change_world(Motion& motion, double factor, const Quat& C) {
+  const auto changed = [&](const Vec3& v) -> Vec3 { return factor * (C * v); };
+  auto joints = motion.skeleton.joints();
+  for (auto& joint : joints) {
+    joint.offset_parent = changed(joint.offset_parent);
+    joint.bone = changed(joint.bone);
+    joint.R_joint_axes = C * joint.R_joint_axes;
+  }
+  motion.skeleton = Skeleton(std::move(joints));
+  for (auto& position : motion.root_positions) position = changed(position);
+  for (auto& rotation : motion.rotations) rotation = C * rotation * C.conjugate();
+  for (auto& track : motion.offset_tracks)
+    for (auto& offset : track.offset_parent) offset = changed(offset);
+}
+
+Axis axis_named(const std::string& name) {
+  if (name == "x") return Axis::x;
+  if (name == "y") return Axis::y;
+  if (name == "z") return Axis::z;
+  throw py::value_error("up must be x, y or z, got '" + name + "'");
+}
+
+bool has_ending(const std::filesystem::path& path, std::string_view ending) {
+  return equal_ignoring_case(path.extension().string(), ending);
+}
+
+// An .asf alone is a skeleton without frames; an .amc is read with its .asf.
+MotionFile read_acclaim(const std::filesystem::path& path,
+                        const std::optional<std::filesystem::path>& asf,
+                        std::optional<double> unit_m, Axis up, const ReadOptions& options) {
+  const bool is_skeleton = has_ending(path, ".asf");
+  const auto skeleton = read_asf(is_skeleton ? path : asf ? *asf : find_asf(path), options);
+  MotionFile file;
+  if (is_skeleton) {
+    file = {{skeleton.skeleton, 1.0 / options.amc_rate_hz, {}, {}, {}}, skeleton.warnings};
+  } else {
+    file = asf ? read_amc(path, skeleton, options) : read_motion_file(path, options);
+  }
+  const double factor = unit_m ? *unit_m / skeleton.metres_per_unit : 1.0;
+  if (up == Axis::y)
+    change_world(file.motion, factor, Quat::Identity());
+  else
+    change_world(file.motion, factor, Quat::FromTwoVectors(unit(up), Vec3::UnitY()));
+  return file;
+}
+
+std::pair<Motion, std::vector<std::string>> read_motion(
+    const std::filesystem::path& path, double amc_rate_hz, std::optional<double> unit_m,
+    const std::string& up, const std::optional<std::filesystem::path>& asf, bool allow_no_frames) {
   ReadOptions options;
   options.amc_rate_hz = amc_rate_hz;
-  MotionFile file = read_motion_file(path, options);
+  options.bvh_unit_m = unit_m.value_or(options.bvh_unit_m);
+  options.bvh_up = axis_named(up);
+  options.allow_no_frames = allow_no_frames;
+  const bool is_acclaim = has_ending(path, ".amc") || (allow_no_frames && has_ending(path, ".asf"));
+  MotionFile file = is_acclaim ? read_acclaim(path, asf, unit_m, options.bvh_up, options)
+                               : read_motion_file(path, options);
   std::vector<std::string> warnings;
   for (const auto& warning : file.warnings)
     warnings.emplace_back(FormatError(warning.location, warning.text).what());
@@ -131,6 +199,7 @@ void bind_motion(py::module_& m) {
       .def_property_readonly("num_frames", &Motion::num_frames)
       .def_property_readonly("root_positions", &root_positions)
       .def_property_readonly("rotations", &rotations)
+      .def_property_readonly("offset_tracks", &offset_tracks)
       .def("joint_positions", &positions_of, py::arg("frame") = "world")
       .def("pivot_positions", &pivots_of)
       .def("resampled", &resampled, py::arg("rate_hz"), release())
@@ -141,7 +210,8 @@ void bind_motion(py::module_& m) {
       });
 
   m.def("read_motion", &read_motion, py::arg("path"), py::kw_only(), py::arg("amc_rate_hz") = 120.0,
-        release());
+        py::arg("unit_m") = py::none(), py::arg("up") = "y", py::arg("asf") = py::none(),
+        py::arg("allow_no_frames") = false, release());
   m.def("write_bvh", &write_bvh, py::arg("path"), py::arg("motion"), release());
 }
 

@@ -8,10 +8,19 @@ from bpy.app.handlers import persistent
 
 from ..session import job
 from ..session.database import databases
+from ..session.imported import glances
 from ..session.take import takes
-from . import database, job_operator, reconstruct, take
+from . import clips, database, import_motion, job_operator, mapping, reconstruct, take
 
-CLASSES = (*job_operator.CLASSES, *database.CLASSES, *take.CLASSES, *reconstruct.CLASSES)
+CLASSES = (
+    *job_operator.CLASSES,
+    *import_motion.CLASSES,
+    *mapping.CLASSES,
+    *database.CLASSES,
+    *clips.CLASSES,
+    *take.CLASSES,
+    *reconstruct.CLASSES,
+)
 
 
 @persistent
@@ -25,6 +34,7 @@ def _end_all() -> None:
     job.cancel_current()
     databases.close()
     takes.close()
+    glances.close()
 
 
 def register() -> None:

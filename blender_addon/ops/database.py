@@ -1,19 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Step 1: choose a motion database or build one."""
 
-from typing import Any
+import os
 
 import bpy
-from bpy.props import BoolProperty, StringProperty
-from bpy.types import Context, Event, Operator
+from bpy.props import BoolProperty, CollectionProperty, FloatProperty, IntProperty, StringProperty
+from bpy.types import Context, Event, Operator, OperatorFileListElement
 
 from ..scene.settings import settings_of
-from ..session.database import SUFFIX, build_job, checked_output, databases, default_output
+from ..session.database import (
+    SUFFIX,
+    BuildChoices,
+    BuildSummary,
+    build_job,
+    checked_output,
+    databases,
+    default_output,
+    last_build,
+)
 from ..session.errors import one_line
 from ..session.job import Job
+from ..session.steps import Steps
 from .job_operator import JobOperator
 
 SKIP = {"SKIP_SAVE"}
+REPORT = "Motion Database Report"
 
 
 class SPARSEMOCAP_OT_open_database(Operator):
@@ -87,37 +98,131 @@ class SPARSEMOCAP_OT_build_database(JobOperator, Operator):
     filepath: StringProperty(
         name="Save as", description="The .smdb file to write", subtype="FILE_PATH", options=SKIP
     )
+    rate_hz: FloatProperty(name="Frame rate", default=25.0, options=SKIP)
     mirror: BoolProperty(
         name="Mirror", description="Add every motion mirrored as well", options=SKIP
     )
+    reverse: BoolProperty(
+        name="Reverse", description="Add every motion backwards as well", options=SKIP
+    )
+    tempos: BoolProperty(name="Other tempos", default=True, options=SKIP)
+    strict: BoolProperty(name="Stop at bad files", options=SKIP)
     exclude: StringProperty(
         name="Leave out", description="File names, separated by commas", options=SKIP
     )
 
     def prepare(self, context: Context) -> Job:
-        """Build from the folder that is given or set in the scene."""
-        self.take_from_panel(context, "source", "mirror", "exclude")
+        """Build from the folder that is given, or from all that are set in the scene."""
+        settings = settings_of(context.scene)
+        more = [] if self.source else [item.path for item in settings.more_sources]
+        names = ("source", "rate_hz", "mirror", "reverse", "tempos", "strict", "exclude")
+        self.take_from_panel(context, *names)
         if not self.filepath:
-            self.filepath = settings_of(context.scene).output
-        job, self._path = build_job(
-            bpy.path.abspath(self.source),
-            bpy.path.abspath(self.filepath),
+            self.filepath = settings.output
+        choices = BuildChoices(
+            rate_hz=self.rate_hz,
             mirror=self.mirror,
+            reverse=self.reverse,
+            tempos=self.tempos,
+            strict=self.strict,
             exclude=self.exclude,
         )
+        sources = [bpy.path.abspath(path) for path in (self.source, *more) if path]
+        job, _ = build_job(sources, bpy.path.abspath(self.filepath), choices)
         return job
 
-    def apply(self, context: Context, result: Any) -> str:
+    def apply(self, context: Context, result: BuildSummary) -> Steps[str]:
         """Use the new database."""
-        settings_of(context.scene).database = self._path
+        yield 0.0
+        settings_of(context.scene).database = result.path
         skipped = f", {len(result.skipped)} left out" if result.skipped else ""
         return (
             f"Built a database of {result.num_clips} clips from {result.num_files} files{skipped}"
         )
 
 
+class SPARSEMOCAP_OT_add_sources(Operator):
+    """Add folders or files of motions to those that the database is built from."""
+
+    bl_idname = "sparse_mocap.add_sources"
+    bl_label = "Add Folders or Files"
+    bl_description = "Add folders or files of motions to those that the database is built from"
+    bl_options = {"REGISTER", "UNDO"}
+
+    directory: StringProperty(subtype="DIR_PATH", options=SKIP)
+    files: CollectionProperty(type=OperatorFileListElement, options=SKIP)
+    dirs: CollectionProperty(type=OperatorFileListElement, options=SKIP)
+    filter_glob: StringProperty(default="*.bvh;*.amc", options={"HIDDEN", "SKIP_SAVE"})
+    filter_folder: BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
+
+    def invoke(self, context: Context, event: Event) -> set[str]:
+        """Let the animator mark them."""
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: Context) -> set[str]:
+        """Add what is marked; where nothing is, the folder that is shown."""
+        names = [item.name for item in (*self.dirs, *self.files) if item.name]
+        settings = settings_of(context.scene)
+        known = {settings.source, *(item.path for item in settings.more_sources)}
+        for name in names or [""]:
+            path = os.path.normpath(os.path.join(self.directory, name))
+            if path in known:
+                continue
+            known.add(path)
+            if settings.source:
+                settings.more_sources.add().path = path
+            else:
+                settings.source = path
+        return {"FINISHED"}
+
+
+class SPARSEMOCAP_OT_remove_source(Operator):
+    """Build the database without this folder or file."""
+
+    bl_idname = "sparse_mocap.remove_source"
+    bl_label = "Remove"
+    bl_description = "Build the database without this folder or file"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    index: IntProperty(options=SKIP)
+
+    def execute(self, context: Context) -> set[str]:
+        """Take it from the list; the file stays where it is."""
+        settings_of(context.scene).more_sources.remove(self.index)
+        return {"FINISHED"}
+
+
+class SPARSEMOCAP_OT_show_build_report(Operator):
+    """Put all that was left out of the last build, and why, into a text."""
+
+    bl_idname = "sparse_mocap.show_build_report"
+    bl_label = "Report as Text"
+    bl_description = (
+        "List all files that were left out, and all warnings, in the Text Editor; "
+        "they can be pasted elsewhere too"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context: Context) -> set[str]:
+        """Make the text, and copy it."""
+        if not last_build:
+            self.report({"ERROR"}, "No motion database was built yet: build one first")
+            return {"CANCELLED"}
+        text = bpy.data.texts.get(REPORT) or bpy.data.texts.new(REPORT)
+        text.clear()
+        text.write(last_build[0].text())
+        if not bpy.app.background:
+            context.window_manager.clipboard = text.as_string()
+        self.report({"INFO"}, f'See the text "{text.name}" in the Text Editor; it is copied too')
+        return {"FINISHED"}
+
+
 CLASSES = (
     SPARSEMOCAP_OT_open_database,
     SPARSEMOCAP_OT_choose_output,
     SPARSEMOCAP_OT_build_database,
+    SPARSEMOCAP_OT_add_sources,
+    SPARSEMOCAP_OT_remove_source,
+    SPARSEMOCAP_OT_show_build_report,
 )

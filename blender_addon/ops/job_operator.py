@@ -14,24 +14,28 @@ from ..scene.settings import settings_of
 from ..session import job as jobs
 from ..session.errors import InputError, one_line
 from ..session.job import Cancelled, Job
+from ..session.steps import Slices, Steps, finished
 
 _TICK_S = 0.1
+_SLICE_S = 0.05  # of work on the main thread, between which the window is drawn
 
 
 class JobOperator:
     """Mix-in: prepare() says what to do, apply() puts the result into Blender.
 
-    Between the two nothing of Blender's is held: an undo or another file may come meanwhile.
+    Between the two nothing of Blender's is held: an undo or another file may come meanwhile. While
+    apply() is at work, slice by slice, the window is drawn but takes no input besides Esc.
     """
 
     _job: Job | None = None
+    _slices: Slices[str] | None = None
     _timer: Any = None
 
     def prepare(self, context: Context) -> Job:
         """The job. Raises InputError or what a file is at fault for."""
         raise NotImplementedError
 
-    def apply(self, context: Context, result: Any) -> str:
+    def apply(self, context: Context, result: Any) -> Steps[str]:
         """Change Blender's data, whole or not at all, and return one line that says so."""
         raise NotImplementedError
 
@@ -49,7 +53,7 @@ class JobOperator:
             _refuse_while_rendering()
             job = self.prepare(context)
             result = job.run(lambda: manager.progress_update(int(100 * job.fraction)))
-            return self._finished(context, result)
+            return self._finished(finished(self.apply(context, result)))
         except Exception as error:
             return self._failed(error)
         finally:
@@ -59,6 +63,10 @@ class JobOperator:
         """Do it on a worker thread while Blender stays usable."""
         if bpy.app.background:
             return self.execute(context)  # nothing ticks there
+        return self.start(context)
+
+    def start(self, context: Context) -> set[str]:
+        """Begin; modal() does the rest."""
         try:
             _refuse_while_rendering()
             self._job = self.prepare(context)
@@ -77,20 +85,27 @@ class JobOperator:
         job = self._job
         if job is None:
             return {"CANCELLED"}
-        if event.type == "ESC" and event.value == "PRESS" and job.is_running:
+        if event.type == "ESC" and event.value == "PRESS":
             job.cancel()
+            if self._slices is not None:
+                self._end(context)
+                return self._failed(Cancelled("Cancelled"))
             return {"RUNNING_MODAL"}
         if event.type != "TIMER":
-            return {"PASS_THROUGH"}
-        compat.redraw_views(context)
-        if not compat.HAS_PROGRESS_BAR:
-            context.window_manager.progress_update(int(100 * job.fraction))
+            return {"PASS_THROUGH"} if self._slices is None else {"RUNNING_MODAL"}
+        self._show_progress(context, job)
         if job.is_running or compat.is_busy(context):
             return {"PASS_THROUGH"}
-        self._end(context)
         try:
-            return self._finished(context, job.result())
+            if self._slices is None:
+                self._begin_slices(context, self.apply(context, job.result()))
+            if not self._slices.advance(_SLICE_S):
+                return {"RUNNING_MODAL"}
+            message = self._slices.result
+            self._end(context)
+            return self._finished(message)
         except Exception as error:
+            self._end(context)
             return self._failed(error)
 
     def cancel(self, context: Context) -> None:
@@ -99,22 +114,45 @@ class JobOperator:
             self._job.cancel()
         self._end(context)
 
+    def _begin_slices(self, context: Context, steps: Steps[str]) -> None:
+        """Tick without pause from now on."""
+        self._slices = Slices(steps)
+        manager = context.window_manager
+        manager.event_timer_remove(self._timer)
+        self._timer = manager.event_timer_add(_TICK_S / 10.0, window=context.window)
+
+    def _show_progress(self, context: Context, job: Job) -> None:
+        compat.redraw_views(context)
+        slices = self._slices
+        fraction = job.fraction if slices is None else slices.fraction
+        label = job.label if slices is None else "Setting keys"
+        compat.show_status(context, label, fraction)
+        if not compat.HAS_PROGRESS_BAR:
+            context.window_manager.progress_update(int(100 * fraction))
+
     def _end(self, context: Context) -> None:
-        self._job = None
+        slices, self._slices, self._job = self._slices, None, None
+        if slices is not None:
+            slices.close()
         timer, self._timer = self._timer, None
+        if timer is None:
+            return  # a dialog that was left
         with suppress(ReferenceError, AttributeError):  # the window may be gone
             manager = context.window_manager
             manager.event_timer_remove(timer)
             if not compat.HAS_PROGRESS_BAR:
                 manager.progress_end()
+            compat.clear_status(context)
 
-    def _finished(self, context: Context, result: Any) -> set[str]:
-        self.report({"INFO"}, self.apply(context, result))
+    def _finished(self, message: str) -> set[str]:
+        self.report({"INFO"}, message)
         return {"FINISHED"}
 
     def _failed(self, error: Exception) -> set[str]:
         if isinstance(error, Cancelled):
             self.report({"INFO"}, "Cancelled")
+        elif isinstance(error, ReferenceError):
+            self.report({"ERROR"}, "The scene was changed meanwhile: nothing was done, try again")
         else:
             self.report({"ERROR"}, one_line(error))
         return {"CANCELLED"}

@@ -6,10 +6,11 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty
 from bpy.types import Context, Operator
 
 from ..scene.armature import reusable_armature
-from ..scene.performance import perform
+from ..scene.performance import perform_steps
 from ..scene.settings import PRESETS, settings_of
 from ..session.job import Job
 from ..session.reconstruct import Performance, reconstruct_job
+from ..session.steps import Steps
 from .job_operator import JobOperator
 
 SKIP = {"SKIP_SAVE"}
@@ -42,11 +43,13 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
             reusable_armature(context)  # better said before the work than after it
         return job
 
-    def apply(self, context: Context, result: Performance) -> str:
+    def apply(self, context: Context, result: Performance) -> Steps[str]:
         """One action, on a new armature or on one that is there."""
         if result.is_guess:
             self.report({"WARNING"}, "The database holds nothing like this take: it is a guess")
-        armature = perform(context, result, self.start_frame, reuse=self.reuse_armature)
+        armature = yield from perform_steps(
+            context, result, self.start_frame, reuse=self.reuse_armature
+        )
         action = armature.animation_data.action
         return (
             f'"{action.name}" on "{armature.name}": {result.duration_s:.1f} s, '

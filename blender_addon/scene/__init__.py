@@ -4,13 +4,17 @@
 
 def register() -> None:
     """Give scenes their settings."""
-    from . import settings
+    from . import clips, mapping, settings
 
     settings.register()
+    clips.register()
+    mapping.register()
 
 
 def unregister() -> None:
     """Take the settings away."""
-    from . import settings
+    from . import clips, mapping, settings
 
+    mapping.unregister()
+    clips.unregister()
     settings.unregister()

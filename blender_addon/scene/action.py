@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
+from contextlib import suppress
 from typing import Any
 
 import bpy
 import numpy as np
-from bpy.types import Action, FCurve, Keyframe, Object, Scene
+from bpy.types import Action, FCurve, Keyframe, Scene
 from numpy.typing import NDArray
 
-from .armature import rest_orientation, units_per_metre_of
+from ..session.steps import finished
+from .armature import Rig, rest_orientation
 from .axes import bone_quaternions, continuous, to_blender
 from .compat import new_curve_of
 
@@ -24,40 +27,55 @@ def frames_of(
     return start_frame + times_s * (scene.render.fps / scene.render.fps_base)
 
 
-def make_action(name: str, armature: Object, motion: Any, frames: NDArray[np.float64]) -> Action:
-    """A new action in which the armature moves as the motion (sparse_mocap.Motion) does.
+def action_steps(
+    name: str, rig: Rig, motion: Any, frames: NDArray[np.float64]
+) -> Generator[float, None, Action]:
+    """A new action in which the rig moves as the motion does, made step by step.
 
-    frames (T,): where the keys stand. Raises ValueError when the motion has numbers that are none.
+    motion: a sparse_mocap.Motion or session.imported.LoadedMotion on the rig's skeleton; frames
+    (T,): where the keys stand. Yields the share that is done, after each curve. Raises ValueError
+    when the motion has numbers that are none; nothing is left behind then, nor when it is closed.
     """
-    root_positions, rotations = np.asarray(motion.root_positions), np.asarray(motion.rotations)
-    if not (np.isfinite(root_positions).all() and np.isfinite(rotations).all()):
+    places, rotations = _places(motion), np.asarray(motion.rotations)
+    if not all(np.isfinite(values).all() for values in (rotations, *places.values())):
         raise ValueError("The motion has positions or rotations that are not numbers")
+    rest = [rest_orientation(rig.armature, bone) for bone in rig.bones]
+    heads = [np.array(rig.armature.data.bones[bone].head_local) for bone in rig.bones]
     action = bpy.data.actions.new(name)
     try:
         action.use_fake_user = True
         new_curve = new_curve_of(action)
-        scale = units_per_metre_of(armature, motion.skeleton)
-        for joint, bone in enumerate(motion.skeleton.names):
+        for joint, bone in enumerate(rig.bones):
             path = f'pose.bones["{bpy.utils.escape_identifier(bone)}"].'
-            if joint == 0:
-                moved = _root_locations(armature, bone, to_blender(root_positions) * scale)
-                for index, values in enumerate(moved.T):
-                    _set_keys(new_curve(path + LOCATION, index, bone), frames, values)
-            turned = bone_quaternions(rotations[:, joint], rest_orientation(armature, bone))
-            for index, values in enumerate(continuous(turned).T):
-                _set_keys(new_curve(path + ROTATION, index, bone), frames, values)
-    except Exception:
-        bpy.data.actions.remove(action)
+            turned = continuous(bone_quaternions(rotations[:, joint], rest[joint]))
+            tracks = {ROTATION: turned}
+            if joint in places:
+                moved = to_blender(places[joint]) * rig.units_per_metre
+                origin = heads[joint] if joint == 0 else 0.0
+                tracks = {LOCATION: (moved - origin) @ rest[joint], ROTATION: turned}
+            yield joint / len(rig.bones)
+            for what, track in tracks.items():
+                for index, values in enumerate(track.T):
+                    action.name  # noqa: B018 - raises ReferenceError when an undo took it
+                    _set_keys(new_curve(path + what, index, bone), frames, values)
+                    yield (joint + (index + 1) / len(track.T)) / len(rig.bones)
+    except BaseException:
+        with suppress(ReferenceError):
+            bpy.data.actions.remove(action)
         raise
     return action
 
 
-def _root_locations(
-    armature: Object, bone: str, positions: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """(T, 3) how far the root bone is from its rest, in its own rest axes."""
-    rest_head = np.array(armature.data.bones[bone].head_local)
-    return (positions - rest_head) @ rest_orientation(armature, bone)
+def make_action(name: str, rig: Rig, motion: Any, frames: NDArray[np.float64]) -> Action:
+    """As action_steps, at once."""
+    return finished(action_steps(name, rig, motion, frames))
+
+
+def _places(motion: Any) -> dict[int, NDArray[np.float64]]:
+    """(T, 3) where the root is, and how far other joints are from their rest, by joint."""
+    offsets = np.asarray(motion.skeleton.offsets)
+    moved = {joint: np.asarray(track) - offsets[joint] for joint, track in motion.offset_tracks}
+    return {**moved, 0: np.asarray(motion.root_positions)}
 
 
 def _set_keys(curve: FCurve, frames: NDArray[np.float64], values: NDArray[np.float64]) -> None:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,15 +14,19 @@ from bpy.types import Armature, Context, Object, Scene
 from mathutils import Vector
 
 from ..session.errors import InputError
+from ..session.names import fitting
 from .axes import Floats, rest_pivots_and_ends, to_blender
 
 MARK = "sparse_mocap"  # custom property of armatures that this add-on made
 NAME = "Sparse Mocap"
 
+# Of bones that stand for joints without length, on a figure of the usual height.
+_USUAL_HEIGHT_M = 1.7
 _ROOT_LENGTH_M = 0.1
-_SHORTEST_BONE_M = 0.005  # Blender drops bones without length
 _LEAF_LENGTH_M = 0.05
+_SHORTEST_BONE_M = 0.001  # Blender drops bones without length
 _FIT_TOLERANCE_M = 1e-3
+_OBJECT_MODES = {"EDIT_ARMATURE": "EDIT", "EDIT_MESH": "EDIT"}  # where context names it otherwise
 _FRONT = Vector((0.0, -1.0, 0.0))
 _UP = np.array([0.0, 1.0, 0.0])
 
@@ -35,39 +41,84 @@ class RestBones:
     tails: Floats
 
 
+@dataclass(frozen=True)
+class Rig:
+    """An armature of a skeleton."""
+
+    armature: Object
+    bones: list[str]
+    """The joints' bones by name: the joint's own unless that is too long for Blender."""
+    units_per_metre: float
+
+
 def rest_bones(skeleton: Any) -> RestBones:
     """The rest pose of a skeleton (sparse_mocap.Skeleton)."""
     parents, names = list(skeleton.parents), list(skeleton.names)
     pivots, ends = rest_pivots_and_ends(parents, skeleton.offsets, skeleton.bones)
-    tails = np.array([_tail(joint, parents, pivots, ends) for joint in range(len(parents))])
+    size_m = float(np.ptp(np.concatenate([pivots, ends]), axis=0).max())
+    size = size_m / _USUAL_HEIGHT_M or 1.0
+    tails = np.array([_tail(joint, parents, pivots, ends, size) for joint in range(len(parents))])
     lift = -min(pivots[:, 1].min(), ends[:, 1].min()) * _UP
-    return RestBones(names, parents, pivots + lift, tails + lift)
+    return RestBones(fitting(names), parents, pivots + lift, tails + lift)
 
 
-def new_armature(context: Context, skeleton: Any, name: str = NAME) -> Object:
+def new_armature(
+    context: Context, skeleton: Any, name: str = NAME, *, is_standard: bool = True
+) -> Rig:
     """A new armature of the skeleton in the scene, active and alone selected.
 
+    is_standard: whether takes may be put onto it later.
     Raises InputError when the scene cannot take one; nothing is left behind then.
     """
     _leave_mode(context)
     data = bpy.data.armatures.new(name)
     armature = bpy.data.objects.new(name, data)
+    scale = units_per_metre(context.scene)
     try:
         _link(context, armature)
         select_only(context, armature)
         bpy.ops.object.mode_set(mode="EDIT")
         try:
-            _add_bones(data, rest_bones(skeleton), units_per_metre(context.scene))
+            bones = rest_bones(skeleton)
+            _add_bones(data, bones, scale)
         finally:
             bpy.ops.object.mode_set(mode="OBJECT")
     except Exception:
-        bpy.data.objects.remove(armature)
-        bpy.data.armatures.remove(data)
+        remove_armature(armature)
         raise
     use_quaternions(armature)
-    data[MARK] = ",".join(skeleton.names)
+    if is_standard:
+        data[MARK] = ",".join(skeleton.names)
     armature.show_in_front = True
-    return armature
+    return Rig(armature, bones.names, scale)
+
+
+def remove_armature(armature: Object) -> None:
+    """Take the armature out of the file, if it is still there."""
+    with suppress(ReferenceError):  # an undo took it
+        data = armature.data
+        bpy.data.objects.remove(armature)
+        bpy.data.armatures.remove(data)
+
+
+@contextmanager
+def selection_back_on_error(context: Context) -> Iterator[None]:
+    """What was selected, active and in which mode is so again when the block raises."""
+    layer = context.view_layer
+    active, mode = layer.objects.active, context.mode
+    names = [obj.name for obj in layer.objects if obj.select_get()]
+    active_name = active.name if active is not None else ""
+    try:
+        yield
+    except BaseException:
+        layer = context.view_layer
+        layer.update()  # what was removed is still in its list otherwise
+        for obj in layer.objects:
+            obj.select_set(obj.name in names)
+        layer.objects.active = layer.objects.get(active_name)
+        if context.mode != mode and bpy.ops.object.mode_set.poll():
+            bpy.ops.object.mode_set(mode=_OBJECT_MODES.get(mode, mode))
+        raise
 
 
 def use_quaternions(armature: Object) -> None:
@@ -82,8 +133,8 @@ def units_per_metre(scene: Scene) -> float:
     return 1.0 if settings.system == "NONE" else 1.0 / settings.scale_length
 
 
-def units_per_metre_of(armature: Object, skeleton: Any) -> float:
-    """How long a metre is in the armature. Raises InputError when it is not of that skeleton."""
+def rig_of(armature: Object, skeleton: Any) -> Rig:
+    """An armature that is there already. Raises InputError when it is not of that skeleton."""
     bones = rest_bones(skeleton)
     missing = [name for name in bones.names if name not in armature.data.bones]
     if missing:
@@ -98,7 +149,7 @@ def units_per_metre_of(armature: Object, skeleton: Any) -> float:
             f'"{armature.name}" has other proportions than this motion database: '
             "reconstruct a new armature"
         )
-    return scale
+    return Rig(armature, bones.names, scale)
 
 
 def rest_orientation(armature: Object, bone: str) -> Floats:
@@ -121,7 +172,7 @@ def reusable_armature(context: Context) -> Object:
         raise InputError('There is no Sparse Mocap armature to reuse: untick "Reuse armature"')
     if len(candidates) > 1:
         raise InputError("Select the Sparse Mocap armature that is to get the take")
-    return _editable(candidates[0])
+    return editable(candidates[0])
 
 
 def select_only(context: Context, obj: Object) -> None:
@@ -131,7 +182,8 @@ def select_only(context: Context, obj: Object) -> None:
     context.view_layer.objects.active = obj
 
 
-def _editable(armature: Object) -> Object:
+def editable(armature: Object) -> Object:
+    """The armature. Raises InputError when it may not be changed now."""
     name = armature.name
     if armature.library is not None:
         raise InputError(f'"{name}" is linked from another file: make it local first')
@@ -165,22 +217,26 @@ def _link(context: Context, obj: Object) -> None:
         raise InputError("The view layer shows no new objects: include its scene collection")
 
 
-def _tail(joint: int, parents: list[int], pivots: Floats, ends: Floats) -> Floats:
-    """Where the joint's bone ends: its end, or what stands for it where a joint has no length."""
-    if np.linalg.norm(ends[joint] - pivots[joint]) >= _SHORTEST_BONE_M:
+def _tail(joint: int, parents: list[int], pivots: Floats, ends: Floats, size: float) -> Floats:
+    """Where the joint's bone ends: its end, or what stands for it where a joint has no length.
+
+    size: of the figure, 1 when it is as tall as people are.
+    """
+    shortest = _SHORTEST_BONE_M * min(size, 1.0)
+    if np.linalg.norm(ends[joint] - pivots[joint]) >= shortest:
         return ends[joint]
     parent = parents[joint]
     if parent < 0:
-        return pivots[joint] + _ROOT_LENGTH_M * _UP
+        return pivots[joint] + size * _ROOT_LENGTH_M * _UP
     children = [pivots[child] for child, other in enumerate(parents) if other == joint]
     if children:
         middle = np.mean(children, axis=0)
-        if np.linalg.norm(middle - pivots[joint]) >= _SHORTEST_BONE_M:
+        if np.linalg.norm(middle - pivots[joint]) >= shortest:
             return middle
     along = pivots[joint] - pivots[parent]
     length = np.linalg.norm(along)
-    direction = along / length if length >= _SHORTEST_BONE_M else _UP
-    return pivots[joint] + _LEAF_LENGTH_M * direction
+    direction = along / length if length >= shortest else _UP
+    return pivots[joint] + size * _LEAF_LENGTH_M * direction
 
 
 def _add_bones(data: Armature, bones: RestBones, scale: float) -> None:

@@ -7,12 +7,13 @@ from collections.abc import Callable
 from typing import Any
 
 import bpy
-from bpy.types import Action, Context, FCurve, Object, UILayout
+from bpy.types import Action, Context, FCurve, Header, Object, UILayout
 from bpy_extras import anim_utils
 
 SLOT_NAME = "Sparse Mocap"  # one name, so that takes can be swapped on an armature
 
 HAS_PROGRESS_BAR = "progress" in UILayout.bl_rna.functions
+HAS_FILE_HANDLERS = hasattr(bpy.types, "FileHandler")  # what takes files dropped on a window
 
 _DRAGS = ("TRANSFORM_OT_", "SCULPT_OT_", "PAINT_OT_", "GPENCIL_OT_", "GREASE_PENCIL_OT_")
 
@@ -55,6 +56,25 @@ def assign_action(obj: Object, action: Action) -> None:
         data.action_slot = action.slots[0]
 
 
+def file_handler(name: str, label: str, operator: str, endings: str) -> type:
+    """A class that offers the operator when files with one of the endings are dropped on a view."""
+
+    def poll_drop(cls: type, context: Context) -> bool:
+        return context.area is not None and context.area.type == "VIEW_3D"
+
+    return type(
+        name,
+        (bpy.types.FileHandler,),
+        {
+            "bl_idname": name,
+            "bl_label": label,
+            "bl_import_operator": operator,
+            "bl_file_extensions": endings,
+            "poll_drop": classmethod(poll_drop),
+        },
+    )
+
+
 def is_rendering() -> bool:
     """Whether a render is at work: nothing may be changed then."""
     return bpy.app.is_job_running("RENDER")
@@ -66,9 +86,31 @@ def is_busy(context: Context) -> bool:
     return is_rendering() or any(tool.bl_idname.startswith(_DRAGS) for tool in at_work)
 
 
+def show_status(context: Context, text: str, fraction: float) -> None:
+    """Say in the status bar of all windows what is at work, how far it is and how to stop it."""
+
+    def draw(header: Header, _: Context) -> None:
+        row = header.layout.row()
+        if HAS_PROGRESS_BAR:
+            row.label(text=text)
+            row.progress(factor=fraction, text=f"{fraction:.0%}")
+        else:
+            row.label(text=f"{text}: {fraction:.0%}", icon="SORTTIME")
+        row.label(text="Cancel", icon="EVENT_ESC")
+
+    if context.workspace is not None:
+        context.workspace.status_text_set(draw)
+
+
+def clear_status(context: Context) -> None:
+    """Blender's own status bar again."""
+    if context.workspace is not None:
+        context.workspace.status_text_set(None)
+
+
 def redraw_views(context: Context) -> None:
-    """Draw all 3D views' sidebars anew."""
+    """Draw all 3D views' sidebars and the file browsers anew."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
-            if area.type == "VIEW_3D":
+            if area.type in ("VIEW_3D", "FILE_BROWSER"):
                 area.tag_redraw()

@@ -5,13 +5,22 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, fields
 
-import bpy
 import numpy as np
 from bpy.types import Action, Context, Object
 
 from ..session.reconstruct import Performance
-from .action import frames_of, make_action
-from .armature import is_ours, new_armature, reusable_armature, select_only, use_quaternions
+from ..session.steps import Steps
+from .action import action_steps, frames_of
+from .armature import (
+    is_ours,
+    new_armature,
+    remove_armature,
+    reusable_armature,
+    rig_of,
+    select_only,
+    selection_back_on_error,
+    use_quaternions,
+)
 from .compat import assign_action
 
 _FACTS = "sparse_mocap"  # custom property of actions that this add-on made
@@ -26,25 +35,28 @@ class Facts:
     is_guess: bool
 
 
-def perform(
+def perform_steps(
     context: Context, performance: Performance, start_frame: float, *, reuse: bool
-) -> Object:
+) -> Steps[Object]:
     """The armature that performs the take, active and alone selected; a new one unless reuse.
 
-    Raises InputError or ValueError; the scene is as it was then.
+    Raises InputError or ValueError; the scene is as it was then, and when the steps are closed.
     """
     motion = performance.motion
     times_s = np.arange(motion.num_frames) * motion.frame_time_s
     frames = frames_of(context.scene, times_s, start_frame)
-    armature = reusable_armature(context) if reuse else new_armature(context, motion.skeleton)
-    try:
-        action = make_action(performance.name, armature, motion, frames)
-    except Exception:
-        if not reuse:
-            data = armature.data
-            bpy.data.objects.remove(armature)
-            bpy.data.armatures.remove(data)
-        raise
+    with selection_back_on_error(context):
+        if reuse:
+            rig = rig_of(reusable_armature(context), motion.skeleton)
+        else:
+            rig = new_armature(context, motion.skeleton)
+        try:
+            action = yield from action_steps(performance.name, rig, motion, frames)
+        except BaseException:
+            if not reuse:
+                remove_armature(rig.armature)
+            raise
+    armature = rig.armature
     facts = Facts(performance.duration_s, performance.misfit_mps2, performance.is_guess)
     action[_FACTS] = asdict(facts)
     use_quaternions(armature)

@@ -2,13 +2,26 @@
 """What the animator chose, kept in the scene."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, PointerProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    PointerProperty,
+    StringProperty,
+)
 from bpy.types import PropertyGroup, Scene
 
 PRESETS = (
     ("default", "Default", "Tuned for smooth, steady motion"),
     ("paper", "Paper", "The constants of the publication (Tautges et al. 2011)"),
 )
+
+
+class SPARSEMOCAP_PG_source(PropertyGroup):
+    """A further folder or file of motions."""
+
+    path: StringProperty(name="Path", description="A folder of motion files, or one file")
 
 
 class SPARSEMOCAP_PG_settings(PropertyGroup):
@@ -22,6 +35,7 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
         description="Folder with motion files: .bvh, or .asf with .amc; searched recursively",
         subtype="DIR_PATH",
     )
+    more_sources: CollectionProperty(type=SPARSEMOCAP_PG_source)
     output: StringProperty(
         name="Save as",
         description="The database file to write; empty: beside the folder, under its name",
@@ -30,6 +44,24 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
         name="Mirror",
         description="Add every motion mirrored as well: twice the motions, and no preferred side",
         default=True,
+    )
+    reverse: BoolProperty(name="Reverse", description="Add every motion played backwards as well")
+    tempos: BoolProperty(
+        name="Other tempos",
+        description="Add every motion at 0.8 and 1.25 times its tempo, while the database is small",
+        default=True,
+    )
+    rate_hz: FloatProperty(
+        name="Frame rate",
+        description="Frames a second of the database; takes are reconstructed at this rate",
+        default=25.0,
+        min=5.0,
+        max=120.0,
+        precision=1,
+    )
+    strict: BoolProperty(
+        name="Stop at bad files",
+        description="Build nothing if a file cannot be used; else it is left out and listed",
     )
     exclude: StringProperty(
         name="Leave out",
@@ -67,6 +99,7 @@ def settings_of(scene: Scene) -> SPARSEMOCAP_PG_settings:
 
 def register() -> None:
     """Give scenes their settings."""
+    bpy.utils.register_class(SPARSEMOCAP_PG_source)
     bpy.utils.register_class(SPARSEMOCAP_PG_settings)
     Scene.sparse_mocap = PointerProperty(type=SPARSEMOCAP_PG_settings)
 
@@ -75,3 +108,4 @@ def unregister() -> None:
     """Take the settings away."""
     del Scene.sparse_mocap
     bpy.utils.unregister_class(SPARSEMOCAP_PG_settings)
+    bpy.utils.unregister_class(SPARSEMOCAP_PG_source)

@@ -10,7 +10,12 @@ from types import ModuleType
 from .errors import InputError, one_line
 
 VENDOR = Path(__file__).resolve().parents[1] / "vendor"
-MODULES = ("sparse_mocap._core", "sparse_mocap.take", "sparse_mocap.reconstruction")
+MODULES = (
+    "sparse_mocap._core",
+    "sparse_mocap.mappings",
+    "sparse_mocap.reconstruction",
+    "sparse_mocap.take",
+)
 
 
 def core() -> ModuleType:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from .clips import ClipTable, table_of
 from .core import core
 from .errors import InputError
 from .job import Job, Progress
@@ -15,6 +16,7 @@ from .opened import Shelf
 
 SUFFIX = ".smdb"
 BUILDING = "Building the motion database"
+TEMPOS = (0.8, 1.25)
 
 
 @dataclass(frozen=True)
@@ -22,6 +24,7 @@ class Database:
     """An opened motion database and what the animator sees of it."""
 
     motions: Any  # sparse_mocap.MotionDatabase
+    clips: ClipTable
     num_clips: int
     num_sources: int
     minutes: float
@@ -35,6 +38,7 @@ def open_database(path: str) -> Database:
     clips = motions.clips
     return Database(
         motions=motions,
+        clips=table_of(clips, motions.rate_hz),
         num_clips=len(clips),
         num_sources=len({clip.source for clip in clips}),
         minutes=motions.num_frames / motions.rate_hz / 60.0,
@@ -46,25 +50,78 @@ def open_database(path: str) -> Database:
 databases: Shelf[Database] = Shelf("motion database", open_database)
 
 
-def build_job(source: str, output: str, *, mirror: bool, exclude: str) -> tuple[Job, str]:
-    """The job that builds a database from a folder of motion files, and the file it will write.
+@dataclass(frozen=True)
+class BuildChoices:
+    """How a database is built."""
 
-    The job's result is a sparse_mocap.BuildReport. exclude: patterns of file names to leave
-    out, separated by commas. Raises InputError.
+    rate_hz: float = 25.0
+    mirror: bool = False
+    reverse: bool = False
+    tempos: bool = True
+    """Whether a small database gets copies at other tempos."""
+    strict: bool = False
+    """Whether one file that cannot be used stops the build."""
+    exclude: str = ""
+    """Patterns of file names to leave out, separated by commas."""
+
+
+@dataclass(frozen=True)
+class BuildSummary:
+    """What came of a build."""
+
+    path: str
+    num_files: int
+    num_clips: int
+    skipped: list[tuple[str, str]]
+    """Files that were left out, and why."""
+    warnings: list[str]
+
+    def text(self) -> str:
+        """All of it for people."""
+        lines = [f"{self.path}: {self.num_clips} clips from {self.num_files} files"]
+        lines += ["", f"Left out: {len(self.skipped)}"]
+        lines += [f"{name}: {reason}" for name, reason in self.skipped]
+        lines += ["", f"Warnings: {len(self.warnings)}", *self.warnings]
+        return "\n".join(lines) + "\n"
+
+
+last_build: list[BuildSummary] = []
+"""The summary of the last build, if there was one."""
+
+
+def build_job(sources: list[str], output: str, choices: BuildChoices) -> tuple[Job, str]:
+    """The job that builds a database from motion files and folders, and the file it will write.
+
+    The job's result is a BuildSummary. Raises InputError.
     """
     sparse_mocap = core()
-    if not source:
+    named = list(dict.fromkeys(source for source in sources if source))
+    if not named:
         raise InputError("Choose the folder of motion files (.bvh, or .asf with .amc) first")
-    if not os.path.exists(source):
-        raise InputError(f"There is no folder {source}: choose the folder of motion files")
-    target = checked_output(output or default_output(source))
-    patterns = [pattern.strip() for pattern in exclude.split(",") if pattern.strip()]
+    for source in named:
+        if not os.path.exists(source):
+            raise InputError(f"There is no folder {source}: choose the folder of motion files")
+    target = checked_output(output or default_output(named[0]))
+    patterns = [pattern.strip() for pattern in choices.exclude.split(",") if pattern.strip()]
 
-    def work(progress: Progress) -> Any:
+    def work(progress: Progress) -> BuildSummary:
         databases.forget()  # where an open file cannot be replaced
-        return sparse_mocap.build_database(
-            [source], target, mirror=mirror, exclude=patterns, progress=progress
+        report = sparse_mocap.build_database(
+            named,
+            target,
+            rate_hz=choices.rate_hz,
+            mirror=choices.mirror,
+            reverse=choices.reverse,
+            tempo_copies=TEMPOS if choices.tempos else (),
+            exclude=patterns,
+            strict=choices.strict,
+            progress=progress,
         )
+        summary = BuildSummary(
+            target, report.num_files, report.num_clips, report.skipped, report.warnings
+        )
+        last_build[:] = [summary]
+        return summary
 
     return Job(BUILDING, work), target
 

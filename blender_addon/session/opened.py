@@ -67,6 +67,11 @@ class Shelf(Generic[T]):
             thread.start()
         return opening
 
+    def wait(self, seconds: float) -> None:
+        """Give what is being opened that long."""
+        for thread in self._threads:
+            thread.join(seconds)
+
     def forget(self) -> None:
         """Let go of the file."""
         self._keep(None)

@@ -1,22 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar: three numbered steps, one file a step."""
+"""The sidebar: three numbered steps, one file a step; and the import dialog."""
 
 import bpy
 
-from . import database, reconstruct, take
-from .step import forget_redraw
+from . import clips, database, import_motion, mapping, reconstruct, take
+from .step import forget_timers
 
-CLASSES = (*database.CLASSES, *take.CLASSES, *reconstruct.CLASSES)
+CLASSES = (
+    *database.CLASSES,
+    *clips.CLASSES,
+    *take.CLASSES,
+    *reconstruct.CLASSES,
+    *mapping.CLASSES,
+)
 
 
 def register() -> None:
     """Show the panels."""
     for cls in CLASSES:
         bpy.utils.register_class(cls)
+    import_motion.register()
 
 
 def unregister() -> None:
     """Take the panels away."""
-    forget_redraw()
+    forget_timers()
+    import_motion.unregister()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

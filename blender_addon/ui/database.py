@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
+import os
+
 import bpy
 from bpy.types import Context, Panel, UILayout
 
 from ..scene.settings import SPARSEMOCAP_PG_settings, settings_of
 from ..session.core import missing_reason
-from ..session.database import BUILDING, databases, default_output
+from ..session.database import BUILDING, databases, default_output, last_build
 from . import text
 from .step import StepPanel, action_button, job_is_running, redraw_soon, tick
+
+_MOST_SHOWN = 3  # files that were left out
 
 
 class SPARSEMOCAP_PT_database(StepPanel, Panel):
@@ -34,6 +38,7 @@ class SPARSEMOCAP_PT_database(StepPanel, Panel):
         else:
             hint = "Open a motion database (.smdb), or build one:"
             text.paragraph(self.layout, context, hint, icon="INFO")
+        _outcome(self.layout, context)
         _build_form(self.layout, context, settings, is_first=not settings.database)
 
     def draw_header_preset(self, context: Context) -> None:
@@ -59,12 +64,18 @@ def _build_form(
     column = box.column()
     column.use_property_split = True
     column.use_property_decorate = False
-    column.prop(settings, "source")
+    _sources(column, settings)
     row = column.row(align=True)
     row.prop(settings, "output")
     row.operator("sparse_mocap.choose_output", text="", icon="FILE_FOLDER")
     column.prop(settings, "exclude")
-    column.prop(settings, "mirror", text="Mirror too")
+    column.prop(settings, "rate_hz")
+    column = box.column(heading="Add copies")
+    column.use_property_split = True
+    column.use_property_decorate = False
+    for name, label in (("mirror", "Mirrored"), ("reverse", "Reversed"), ("tempos", "Tempos")):
+        column.prop(settings, name, text=label)
+    column.prop(settings, "strict", text="Strict")
     if settings.source and not settings.output:
         path = default_output(bpy.path.abspath(settings.source))
         text.paragraph(box, context, f"Writes {path}")
@@ -75,6 +86,37 @@ def _build_form(
         BUILDING,
         is_ready=bool(settings.source),
     )
+
+
+def _sources(column: UILayout, settings: SPARSEMOCAP_PG_settings) -> None:
+    """The folders and files that the database is built from."""
+    column.prop(settings, "source")
+    for index, item in enumerate(settings.more_sources):
+        row = column.row(align=True)
+        row.prop(item, "path", text="and" if index == 0 else " ")
+        row.operator("sparse_mocap.remove_source", text="", icon="X").index = index
+    row = column.row()
+    row.operator("sparse_mocap.add_sources", icon="ADD")
+
+
+def _outcome(layout: UILayout, context: Context) -> None:
+    """What the last build left out, if it made the database in use."""
+    summary = last_build[0] if last_build else None
+    path = bpy.path.abspath(settings_of(context.scene).database)
+    if summary is None or summary.path != path or not (summary.skipped or summary.warnings):
+        return
+    box = layout.box()
+    counts = [(len(summary.skipped), "left out"), (len(summary.warnings), "warnings")]
+    line = ", ".join(f"{count} {what}" for count, what in counts if count)
+    text.paragraph(box, context, f"{summary.num_files} files: {line}", icon="INFO")
+    for name, reason in summary.skipped[:_MOST_SHOWN]:
+        base = os.path.basename(name)
+        reason = reason.removeprefix(name).lstrip(": ")
+        text.paragraph(box, context, text.shortened(f"{base}: {reason}"))
+    more = len(summary.skipped) - _MOST_SHOWN
+    if more > 0:
+        text.paragraph(box, context, f"and {more} more")
+    box.operator("sparse_mocap.show_build_report", icon="TEXT")
 
 
 def _contents(layout: UILayout, context: Context, settings: SPARSEMOCAP_PG_settings) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import bpy
@@ -14,6 +15,8 @@ from ..session.job import Job
 from ..session.opened import Shelf
 
 _REDRAW_S = 0.1
+
+_changes: set[Callable[[], None]] = set()
 
 
 class StepPanel:
@@ -67,15 +70,28 @@ def _progress(layout: UILayout, job: Job) -> None:
 
 def redraw_soon() -> None:
     """Draw the panels anew in a moment: a file is still being opened."""
+    later(_nothing)
+
+
+def later(change: Callable[[], None]) -> None:
+    """Do what drawing must not do, in a moment, and draw the panels anew then."""
+    _changes.add(change)
     if not bpy.app.timers.is_registered(_redraw):
         bpy.app.timers.register(_redraw, first_interval=_REDRAW_S)
 
 
-def forget_redraw() -> None:
+def forget_timers() -> None:
     """Leave no timer behind."""
+    _changes.clear()
     if bpy.app.timers.is_registered(_redraw):
         bpy.app.timers.unregister(_redraw)
 
 
+def _nothing() -> None:
+    pass
+
+
 def _redraw() -> None:
+    while _changes:
+        _changes.pop()()
     compat.redraw_views(bpy.context)

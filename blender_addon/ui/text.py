@@ -44,6 +44,11 @@ def facts(layout: UILayout, rows: list[tuple[str, str]]) -> None:
         split.label(text=value)
 
 
+def shortened(text: str, num_characters: int = 120) -> str:
+    """The text, cut off where it is too long for a panel."""
+    return textwrap.shorten(text, num_characters, placeholder=" ...")
+
+
 def size(num_bytes: int) -> str:
     """A file's size for people."""
     return f"{num_bytes / 1e6:.1f} MB" if num_bytes < 1e9 else f"{num_bytes / 1e9:.2f} GB"

@@ -135,7 +135,7 @@ def contents() -> dict[str, object]:
     found["settings"] = [
         getattr(settings(), name)
         for name in settings().bl_rna.properties.keys()  # noqa: SIM118 - not a dict
-        if name not in ("rna_type", "name")
+        if name not in ("rna_type", "name", "more_sources")
     ]
     found["active"] = bpy.context.view_layer.objects.active
     found["mode"] = bpy.context.mode

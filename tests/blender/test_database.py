@@ -34,9 +34,8 @@ def test_what_is_not_given_comes_from_the_panel(tmp_path):
 
 def test_cancel_leaves_no_file(tmp_path):
     output = tmp_path / "cancelled.smdb"
-    job, _ = addon("session.database").build_job(
-        str(library().motions), str(output), mirror=True, exclude=""
-    )
+    steps = addon("session.database")
+    job, _ = steps.build_job([str(library().motions)], str(output), steps.BuildChoices(mirror=True))
     raised(addon("session.job").Cancelled, lambda: job.run(job.cancel))
     assert list(tmp_path.iterdir()) == []
 
@@ -75,3 +74,31 @@ def test_bad_databases_give_one_line(tmp_path):
     assert "No such file" in opened(tmp_path / "missing.smdb")
     assert "folder" in opened(tmp_path)
     assert "chosen" in opened("")
+
+
+def test_several_sources_and_all_options_come_from_the_panel(tmp_path):
+    files = sorted(library().motions.iterdir())
+    bad = tmp_path / "bad.bvh"
+    bad.write_text("HIERARCHY\n")
+    names = [{"name": files[0].name}, {"name": files[1].name}]
+    bpy.ops.sparse_mocap.add_sources(directory=str(library().motions), files=names)
+    bpy.ops.sparse_mocap.add_sources(directory=str(tmp_path), dirs=[{"name": "."}])
+    bpy.ops.sparse_mocap.add_sources(directory=str(tmp_path), files=[{"name": "gone.bvh"}])
+    assert settings().source == str(files[0])
+    paths = [item.path for item in settings().more_sources]
+    assert paths == [str(files[1]), str(tmp_path), str(tmp_path / "gone.bvh")]
+    bpy.ops.sparse_mocap.remove_source(index=2)
+    settings().output = str(tmp_path / "panel")
+    settings().rate_hz, settings().reverse, settings().tempos = 30.0, True, False
+    settings().mirror = False
+    bpy.ops.sparse_mocap.build_database()
+    database = addon("session.database").databases.get(str(tmp_path / "panel.smdb"))
+    assert (database.num_sources, database.rate_hz) == (2, 30.0)
+    assert {clip.tempo for clip in database.motions.clips} == {1.0}
+    assert any(clip.is_reversed for clip in database.motions.clips)
+    assert bpy.ops.sparse_mocap.show_build_report() == {"FINISHED"}
+    report = bpy.data.texts["Motion Database Report"].as_string()
+    assert str(bad) in report
+    assert "Left out: 1" in report
+    settings().strict = True
+    assert "bad.bvh" in error_of(bpy.ops.sparse_mocap.build_database)

@@ -40,9 +40,8 @@ def test_twenty_times_leaves_nothing():
 
 def test_unregister_ends_the_job_at_work(tmp_path):
     output = tmp_path / "never.smdb"
-    job, _ = addon("session.database").build_job(
-        str(library().motions), str(output), mirror=True, exclude=""
-    )
+    steps = addon("session.database")
+    job, _ = steps.build_job([str(library().motions)], str(output), steps.BuildChoices(mirror=True))
     job.start()
     blender_addon.unregister()
     assert not job.is_running

@@ -60,3 +60,31 @@ def test_quitting_meanwhile_leaves_no_file(tmp_path):
 
 def test_the_last_operator_can_be_adjusted(tmp_path):
     _in_window("adjust", tmp_path)
+
+
+def test_import_is_one_undo_step_and_does_not_freeze_the_window(tmp_path):
+    _in_window("import", tmp_path)
+
+
+def test_escape_while_keys_are_set_leaves_nothing(tmp_path):
+    _in_window("import_escaped", tmp_path)
+
+
+def test_undo_while_keys_are_set_does_no_harm(tmp_path):
+    _in_window("import_undone", tmp_path)
+
+
+def test_import_through_the_file_browser(tmp_path):
+    _in_window("import_chosen", tmp_path)
+
+
+def test_import_of_a_dropped_file(tmp_path):
+    _in_window("dropped", tmp_path)
+
+
+def test_leaving_the_import_dialog_does_nothing(tmp_path):
+    _in_window("import_left", tmp_path)
+
+
+def test_a_previewed_clip_plays(tmp_path):
+    _in_window("preview", tmp_path)

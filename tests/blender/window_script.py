@@ -99,10 +99,7 @@ def escape() -> Steps:
     job = start_building()
     yield 0.15
     assert job.is_running
-    window = bpy.context.window_manager.windows[0]
-    for value in ("PRESS", "RELEASE"):
-        window.event_simulate(type="ESC", value=value, x=200, y=200)
-        yield 0.05
+    yield from press_escape()
     yield from until(lambda: not job.is_running)
     yield 0.3
     assert job.is_cancelled
@@ -176,7 +173,173 @@ def adjust_afterwards() -> Steps:
     assert bpy.data.actions[0].frame_range[0] == 11.0
 
 
+def press_escape() -> Steps:
+    window = bpy.context.window_manager.windows[0]
+    for value in ("PRESS", "RELEASE"):
+        window.event_simulate(type="ESC", value=value, x=200, y=200)
+        yield 0.05
+
+
+def large_file() -> str:
+    """A .bvh of 40 joints and 8,000 frames."""
+    path = Path(FOLDER) / "large.bvh"
+    lines, channels = ["HIERARCHY"], "CHANNELS 3 Zrotation Xrotation Yrotation"
+    for index in range(40):
+        word, offset = ("JOINT", "0 2 0") if index else ("ROOT", "0 90 0")
+        lines += [f"{word} j{index}", "{", f"OFFSET {offset}", channels]
+    lines += ["}"] * 40 + ["MOTION", "Frames: 8000", "Frame Time: 0.01"]
+    lines += [" ".join([f"{0.01 * row:.2f}"] * 120) for row in range(8000)]
+    path.write_text("\n".join(lines))
+    return str(path)
+
+
+def confirm_dialog() -> Steps:
+    """Enter, with the pointer on the dialog that has just come up under it."""
+    window = bpy.context.window_manager.windows[0]
+    yield 0.3
+    for value in ("PRESS", "RELEASE"):
+        window.event_simulate(type="RET", value=value, x=400, y=400)
+        yield 0.1
+
+
+def begin_import(path: str) -> Steps:
+    """Through the dialog that a dropped file opens."""
+    window = bpy.context.window_manager.windows[0]
+    window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=400, y=400)
+    yield 0.2
+    folder, name = str(Path(path).parent), Path(path).name
+    with bpy.context.temp_override(**view()):
+        bpy.ops.ed.undo_push(message="before")
+        done = bpy.ops.sparse_mocap.import_bvh(
+            "INVOKE_DEFAULT", True, directory=folder, files=[{"name": name}]
+        )
+    assert done == {"RUNNING_MODAL"}
+    yield from confirm_dialog()
+
+
+def import_dropped() -> Steps:
+    before = [item.name for item in bpy.data.objects]
+    yield from begin_import(large_file())
+    num_halfway = 0
+    while not any(item.animation_data for item in bpy.data.objects):
+        num_halfway += len(bpy.data.actions)
+        yield 0.01
+    assert num_halfway > 3, "the window stood still while keys were set"
+    yield 0.3
+    action = bpy.data.actions["large"]
+    assert bpy.context.view_layer.objects.active.animation_data.action == action
+    assert jobs.current() is None
+    undo()
+    yield 0.1
+    assert [item.name for item in bpy.data.objects] == before
+    assert not bpy.data.actions
+
+
+def import_escaped() -> Steps:
+    before = [item.name for item in bpy.data.objects]
+    active = bpy.context.view_layer.objects.active.name
+    yield from begin_import(large_file())
+    yield from until(lambda: len(bpy.data.actions) == 1)
+    assert len(bpy.data.armatures) == 1
+    yield from press_escape()
+    yield 0.3
+    assert not bpy.data.actions
+    assert not bpy.data.armatures
+    assert [item.name for item in bpy.data.objects] == before
+    assert bpy.context.view_layer.objects.active.name == active
+
+
+def import_undone_meanwhile() -> Steps:
+    before = [item.name for item in bpy.data.objects]
+    yield from begin_import(large_file())
+    yield from until(lambda: len(bpy.data.actions) == 1)
+    undo()
+    yield 0.5
+    assert not bpy.data.actions
+    assert [item.name for item in bpy.data.objects] == before
+
+
+def until_imported(before: list[str]) -> Steps:
+    yield from until(lambda: any(item.animation_data for item in bpy.data.objects))
+    yield 0.3
+    assert len(bpy.data.actions) == 1
+    undo()
+    yield 0.1
+    assert [item.name for item in bpy.data.objects] == before
+
+
+def import_chosen() -> Steps:
+    """Through File > Import and the file browser."""
+    path, before = large_file(), [item.name for item in bpy.data.objects]
+    with bpy.context.temp_override(**view()):
+        bpy.ops.ed.undo_push(message="before")
+        bpy.ops.sparse_mocap.import_bvh("INVOKE_DEFAULT", True)
+    yield 1.0
+    windows = bpy.context.window_manager.windows
+    found = [(w, a) for w in windows for a in w.screen.areas if a.type == "FILE_BROWSER"]
+    window, area = found[0]
+    area.spaces.active.params.directory = os.path.dirname(path).encode()
+    area.spaces.active.params.filename = os.path.basename(path)
+    yield 0.5
+    with bpy.context.temp_override(window=window, area=area, region=area.regions[-1]):
+        bpy.ops.file.execute()
+    yield from until_imported(before)
+
+
+def import_left() -> Steps:
+    """The dialog is left: nothing happens."""
+    before = [item.name for item in bpy.data.objects]
+    folder, name = str(Path(MOTIONS)), next(Path(MOTIONS).iterdir()).name
+    with bpy.context.temp_override(**view()):
+        bpy.ops.sparse_mocap.import_bvh(
+            "INVOKE_DEFAULT", True, directory=folder, files=[{"name": name}]
+        )
+    yield 0.5
+    yield from press_escape()
+    yield 0.3
+    assert jobs.current() is None
+    assert [item.name for item in bpy.data.objects] == before
+
+
+def dropped() -> Steps:
+    """As if the file were dropped on the viewport."""
+    if not hasattr(bpy.ops.wm, "drop_import_file") or not hasattr(bpy.types, "FileHandler"):
+        return
+    path, before = large_file(), [item.name for item in bpy.data.objects]
+    window = bpy.context.window_manager.windows[0]
+    window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=400, y=400)
+    yield 0.2
+    with bpy.context.temp_override(**view()):
+        bpy.ops.ed.undo_push(message="before")
+        bpy.ops.wm.drop_import_file(
+            "INVOKE_DEFAULT",
+            directory=os.path.dirname(path),
+            files=[{"name": os.path.basename(path)}],
+        )
+    yield from confirm_dialog()
+    yield from until_imported(before)
+
+
+def preview_plays() -> Steps:
+    bpy.context.scene.sparse_mocap.database = DATABASE
+    with bpy.context.temp_override(**view()):
+        bpy.ops.ed.undo_push(message="chosen")
+        done = bpy.ops.sparse_mocap.preview_clip("INVOKE_DEFAULT", True, index=1)
+    assert done == {"FINISHED"}
+    yield 0.2
+    assert bpy.data.objects["Clip Preview"].animation_data.action
+    yield from until(lambda: bpy.context.scene.frame_current > 2)
+    assert bpy.context.window_manager.windows[0].screen.is_animation_playing
+
+
 SCENARIOS = {
+    "preview": preview_plays,
+    "dropped": dropped,
+    "import_chosen": import_chosen,
+    "import_left": import_left,
+    "import": import_dropped,
+    "import_escaped": import_escaped,
+    "import_undone": import_undone_meanwhile,
     "reconstruct": reconstruct,
     "escape": escape,
     "cancel": cancel,

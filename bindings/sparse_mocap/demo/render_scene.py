@@ -103,11 +103,12 @@ def figure(name: str, path: Path, colour: tuple[float, float, float]) -> Figure:
     """The motion of the file as an armature with its action and a body of that colour."""
     motion, _ = sparse_mocap.read_motion(path)
     motion, _ = sparse_mocap.standard_motion(motion)  # both figures are built alike
-    armature = new_armature(bpy.context, motion.skeleton, name)
+    rig = new_armature(bpy.context, motion.skeleton, name)
+    armature = rig.armature
     armature.show_in_front = False
     times_s = np.arange(motion.num_frames) * motion.frame_time_s
     frames = frames_of(bpy.context.scene, times_s, 1.0)
-    assign_action(armature, make_action(name, armature, motion, frames))
+    assign_action(armature, make_action(name, rig, motion, frames))
     return Figure(armature, new_body(armature, name, plain_material(name, colour)), times_s[-1])
 
 

@@ -24,7 +24,7 @@ def motions(tmp_path_factory):
 def files(motions):
     """A database and a take of a part of it."""
     built, recorded = motions.parent / "all.smdb", motions.parent / "part.csv"
-    job, target = database.build_job(str(motions), str(built), mirror=False, exclude="")
+    job, target = database.build_job([str(motions)], str(built), database.BuildChoices())
     job.run()
     assert target == str(built)
     motion, _ = sparse_mocap.standard_motion(sparse_mocap.read_motion(motions / "all.bvh")[0])
@@ -41,16 +41,38 @@ def test_output_is_beside_the_folder_and_gets_its_ending(tmp_path):
 def test_sources_that_are_none_are_refused(tmp_path):
     for source in ("", str(tmp_path / "nowhere")):
         with pytest.raises(InputError):
-            database.build_job(source, str(tmp_path / "x"), mirror=False, exclude="")
+            database.build_job([source], str(tmp_path / "x"), database.BuildChoices())
 
 
 def test_patterns_leave_files_out(motions, tmp_path):
     job, _ = database.build_job(
-        str(motions), str(tmp_path / "x"), mirror=False, exclude=" , *.bvh,"
+        [str(motions)], str(tmp_path / "x"), database.BuildChoices(exclude=" , *.bvh,")
     )
     with pytest.raises(ValueError, match="excluded"):
         job.run()
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_build_says_what_it_left_out(motions, tmp_path):
+    bad = tmp_path / "bad.bvh"
+    bad.write_text("HIERARCHY\nnothing\n")
+    sources = [str(motions), str(bad), str(motions)]
+    choices = database.BuildChoices(rate_hz=30.0, reverse=True, tempos=False)
+    job, target = database.build_job(sources, str(tmp_path / "x"), choices)
+    summary = job.run()
+    assert database.last_build == [summary]
+    assert [path for path, _ in summary.skipped] == [str(bad)]
+    assert "bad.bvh" in summary.text()
+    opened = database.open_database(target)
+    assert opened.rate_hz == 30.0
+    assert {(clip.is_reversed, clip.tempo) for clip in opened.motions.clips} == {
+        (False, 1.0),
+        (True, 1.0),
+    }
+    strict = database.BuildChoices(strict=True)
+    with pytest.raises(ValueError, match=r"bad\.bvh"):
+        database.build_job(sources, str(tmp_path / "y"), strict)[0].run()
+    assert not (tmp_path / "y.smdb").exists()
 
 
 def test_database_and_take_say_what_is_in_them(files):

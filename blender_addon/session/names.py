@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Names that Blender takes as they are."""
+
+from __future__ import annotations
+
+MOST_BYTES = 63
+
+
+def fitting(names: list[str]) -> list[str]:
+    """The names, shortened to what Blender can hold and then told apart by a number."""
+    taken: set[str] = set()
+    return [_free(name, taken) for name in names]
+
+
+def _free(name: str, taken: set[str]) -> str:
+    candidate, number = _shortened(name, MOST_BYTES), 0
+    while candidate in taken:
+        number += 1
+        ending = f".{number:03}"
+        candidate = _shortened(name, MOST_BYTES - len(ending)) + ending
+    taken.add(candidate)
+    return candidate
+
+
+def _shortened(name: str, num_bytes: int) -> str:
+    """The longest start of the name that is no longer than that in UTF-8."""
+    return name.encode(errors="replace")[:num_bytes].decode(errors="ignore")

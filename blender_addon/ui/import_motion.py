@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The import dialog's options, the entries of File > Import and what may be dropped on a view."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import bpy
+from bpy.types import Context, UILayout
+
+from ..scene import compat
+from ..session.core import missing_reason
+from ..session.imported import USUAL_SIZES_M, Glance, glances
+from . import text
+from .step import redraw_soon
+
+UNITS = (
+    ("FILE", "From the file", "What an .asf says; centimetres for .bvh, which says nothing"),
+    ("CM", "Centimetres", "100 units are a metre"),
+    ("M", "Metres", "A unit is a metre"),
+    ("DM", "Decimetres", "10 units are a metre, as MakeHuman has it"),
+    ("MM", "Millimetres", "1000 units are a metre"),
+    ("INCH", "Inches", "A unit is 2.54 cm"),
+    ("CMU", "Inches / 0.45", "A unit is 5.64 cm, as the CMU and HDM05 databases have it"),
+)
+UP_AXES = (
+    ("Y", "Y", "As most motion files have it"),
+    ("Z", "Z", "As Blender has it"),
+    ("X", "X", ""),
+)
+_UNITS_M = {"CM": 0.01, "M": 1.0, "DM": 0.1, "MM": 0.001, "INCH": 0.0254, "CMU": 0.0254 / 0.45}
+_DROPPED = (("bvh", "Motion Capture BVH", ".bvh"), ("acclaim", "Acclaim", ".asf;.amc"))
+
+
+def unit_m(unit: str) -> float | None:
+    """How many metres that is; None: what the file says."""
+    return _UNITS_M.get(unit)
+
+
+def draw_options(operator: Any, context: Context) -> None:
+    """The options of an import operator, and what they make of the file."""
+    layout = operator.layout
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    paths = operator.paths()
+    if context.area is None or context.area.type != "FILE_BROWSER":
+        name = os.path.basename(paths[0]) if len(paths) == 1 else f"{len(paths)} files"
+        layout.label(text=name, icon="FILE")
+    column = layout.column()
+    column.prop(operator, "unit")
+    column.row().prop(operator, "up_axis", expand=True)
+    column = layout.column()
+    if "amc_rate_hz" in operator.bl_rna.properties:
+        column.prop(operator, "amc_rate_hz")
+    column.prop(operator, "start_frame")
+    column = layout.column()
+    column.use_property_split = False
+    column.prop(operator, "keep_timing")
+    column.prop(operator, "standard_skeleton")
+    path = _path_in_sight(operator, context)
+    if path.lower().endswith(operator.endings):
+        _draw_glance(layout, context, path, unit_m(operator.unit), operator)
+
+
+def _path_in_sight(operator: Any, context: Context) -> str:
+    """The file that is marked in the file browser, else the first that was dropped."""
+    parameters = getattr(context.space_data, "params", None)
+    if parameters is not None and hasattr(parameters, "filename"):
+        folder = parameters.directory
+        folder = folder.decode(errors="surrogateescape") if isinstance(folder, bytes) else folder
+        return f"{folder}{parameters.filename}"
+    return next(iter(operator.paths()), "")
+
+
+def _draw_glance(
+    layout: UILayout, context: Context, path: str, unit: float | None, operator: Any
+) -> None:
+    entry = glances.peek(path)
+    if entry.is_opening:
+        layout.label(text="Reading the file", icon="SORTTIME")
+        redraw_soon()
+    elif entry.error:
+        text.error(layout, context, entry.error)
+    else:
+        glance: Glance = entry.value
+        size_m = glance.size_with(unit)
+        rows = [("Joints", str(glance.num_joints))]
+        if glance.num_frames > 0:
+            rate_hz = getattr(operator, "amc_rate_hz", glance.rate_hz)
+            rows.append(("Frames", f"{glance.num_frames:,}"))
+            rows.append(("Length", text.duration((glance.num_frames - 1) / rate_hz)))
+        rows.append(("Size", f"{size_m:.3g} m"))
+        text.facts(layout, rows)
+        if not USUAL_SIZES_M[0] <= size_m <= USUAL_SIZES_M[1]:
+            text.paragraph(layout, context, "No person's size: is the unit right?", icon="ERROR")
+
+
+def draw_menu(menu: Any, _: Context) -> None:
+    """The entries of File > Import."""
+    if not missing_reason():
+        menu.layout.operator("sparse_mocap.import_bvh", text="Motion Capture BVH (.bvh)")
+        menu.layout.operator("sparse_mocap.import_acclaim", text="Acclaim (.asf/.amc)")
+
+
+_handlers = [
+    compat.file_handler(f"SPARSEMOCAP_FH_{name}", label, f"sparse_mocap.import_{name}", endings)
+    for name, label, endings in _DROPPED
+    if compat.HAS_FILE_HANDLERS
+]
+
+
+def register() -> None:
+    """Show the entries and take what is dropped."""
+    bpy.types.TOPBAR_MT_file_import.append(draw_menu)
+    for handler in _handlers:
+        bpy.utils.register_class(handler)
+
+
+def unregister() -> None:
+    """Take both away."""
+    for handler in _handlers:
+        bpy.utils.unregister_class(handler)
+    bpy.types.TOPBAR_MT_file_import.remove(draw_menu)
