@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The compiled core: motion databases."""
+
+from collections.abc import Callable, Sequence
+from typing import TypedDict, Unpack
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._core_motion import Motion, Skeleton
+from ._core_types import Path, ProgressCallback
+
+class Clip:
+    """A stretch of a database's rows.
+
+    source is the file, relative to the folder built from; hashes are XXH3 of it and of the .asf
+    that was read with it; skeleton is the id of its SourceSkeleton; origin and license are notes;
+    warnings are kinds of warnings about the file and how often (empty for copies).
+    """
+
+    name: str
+    actor: str
+    motion_class: str
+    source: str
+    source_hash: str
+    skeleton_hash: str
+    skeleton: str
+    origin: str
+    license: str
+    source_frames: int
+    source_rate_hz: float
+    warnings: dict[str, int]
+    is_mirrored: bool
+    is_reversed: bool
+    tempo: float
+    begin: int
+    end: int
+
+class SourceSkeleton:
+    """One kind of skeleton among a database's sources.
+
+    joints are the source's that move the standard ones; unit_scale times its lengths are metres.
+    """
+
+    id: str
+    num_joints: int
+    joints: dict[str, str]
+    unit_scale: float
+
+class MotionDatabase:
+    """An opened .smdb, read-only and thread-safe."""
+
+    def __init__(self, path: Path) -> None: ...
+    path: str
+    num_frames: int
+    rate_hz: float
+    skeleton: Skeleton
+    clips: list[Clip]
+    skeletons: list[SourceSkeleton]
+    skipped: list[tuple[str, str]]
+    duplicates: list[tuple[str, str]]
+    site_names: list[str]
+    @property
+    def build_info(self) -> str:
+        """JSON: options and counts of the build."""
+    def array(self, name: str) -> NDArray[np.float32]:
+        """A read-only view of the rows.
+
+        Names: angles, positions, root_motion, contacts, specific_force_pivot, specific_force_end,
+        angular_velocity, up.
+        """
+    def clip_motion(self, index: int) -> Motion:
+        """The clip as a motion on the standard skeleton, starting at the origin."""
+
+def find_motion_files(sources: Sequence[Path], exclude: Sequence[str] = ()) -> list[Path]:
+    """The motion files that the sources are or hold, without those excluded, sorted.
+
+    Raises FormatError when a source does not exist or nothing is left.
+    """
+
+class ProgressReport:
+    """How far an import is: done of total steps.
+
+    files of num_files are through in this pass over them (there are two) and hold so many frames;
+    bytes of num_bytes are read, over all passes.
+    """
+
+    done: int
+    total: int
+    what: str
+    files: int
+    num_files: int
+    frames: int
+    bytes: int
+    num_bytes: int
+
+class BuildReport:
+    """What an import did.
+
+    num_files, source_frames and source_bytes are what it took in, num_clips and num_frames what
+    the database holds; num_known files were in already, num_replaced of num_files took the place
+    of what they held before. skipped (unusable) and duplicates are (path, reason).
+    """
+
+    num_files: int
+    num_known: int
+    num_replaced: int
+    num_clips: int
+    num_frames: int
+    source_frames: int
+    source_bytes: int
+    elapsed_s: float
+    skipped: list[tuple[str, str]]
+    duplicates: list[tuple[str, str]]
+    warnings: list[str]
+
+class _ImportOptions(TypedDict, total=False):
+    """Of build_database and add_to_database; no class at run time.
+
+    num_threads: 0, the default, is one a processor; the file is the same. metadata: a table
+    file,actor,class,source,license; by default metadata.csv of the source folders. by_hand: the
+    joints of skeletons that have them all; mappings: a folder that remembers those of others.
+    details hears each report before progress does.
+    """
+
+    exclude: Sequence[str]
+    strict: bool
+    keep_duplicates: bool
+    num_threads: int
+    metadata: Path | None
+    by_hand: dict[str, str]
+    mappings: Path | None
+    progress: ProgressCallback | None
+    details: Callable[[ProgressReport], object] | None
+
+def build_database(
+    sources: Sequence[Path],
+    output: Path,
+    *,
+    rate_hz: float = 25.0,
+    mirror: bool = False,
+    reverse: bool = False,
+    tempo_copies: Sequence[float] = (0.8, 1.25),
+    **options: Unpack[_ImportOptions],
+) -> BuildReport:
+    """Builds a database from motion files and folders of them."""
+
+def add_to_database(
+    database: Path,
+    sources: Sequence[Path],
+    output: Path | None = None,
+    **options: Unpack[_ImportOptions],
+) -> BuildReport:
+    """Adds motion files on the database's skeleton, at its rate, with its kinds of copies.
+
+    Replaces the database (atomically) when output is None. Files that are in are not read again.
+    """
+
+def drop_from_database(database: Path, clips: Sequence[str], output: Path | None = None) -> int:
+    """Drops clips by glob patterns on name or source, and tells how many. Raises FormatError."""
