@@ -86,8 +86,7 @@ std::pair<Motion, std::vector<std::string>> read_motion(const std::filesystem::p
   options.amc_rate_hz = amc_rate_hz;
   MotionFile file = read_motion_file(path, options);
   std::vector<std::string> warnings;
-  for (const auto& warning : file.warnings)
-    warnings.emplace_back(FormatError(warning.location, warning.text).what());
+  for (const auto& warning : file.warnings) warnings.push_back(warning.message());
   return {std::move(file.motion), std::move(warnings)};
 }
 

@@ -136,7 +136,7 @@ class Builder {
   void add_file(const fs::path& path) {
     const MotionFile file = read_motion_file(path, options_.read);
     for (const auto& warning : file.warnings)
-      report_.warnings.push_back(FormatError(warning.location, warning.text).what());
+      report_.warnings.push_back(warning.message());
     auto mapping = map_humanoid(file.motion);
     std::vector<std::string> warnings = mapping.warnings;
     const Motion motion = to_standard(file.motion, mapping, content_.skeleton, &warnings);

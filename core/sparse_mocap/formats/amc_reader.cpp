@@ -42,7 +42,7 @@ class AmcReader {
   void check_complete(std::string_view frame_token) const;
   std::string frame_name() const { return "frame " + std::to_string(frame_number_); }
   void warn(std::string_view token, const std::string& text) {
-    file_.warnings.push_back({scanner_.location(token), text});
+    add_warning(file_.warnings, scanner_.location(token), text);
   }
 
   TextScanner& scanner_;
@@ -87,12 +87,12 @@ MotionFile AmcReader::read() {
   if (file_.motion.num_frames() == 0 && !options_.allow_no_frames)
     scanner_.fail(scanner_.here(), "there is no frame, so there is no motion");
   if (missing_frames_ > 0)
-    file_.warnings.push_back({{scanner_.path()},
-                              std::to_string(missing_frames_) +
-                                  " frame numbers are missing; the frames around are joined"});
+    add_warning(file_.warnings, {scanner_.path()},
+                std::to_string(missing_frames_) +
+                    " frame numbers are missing; the frames around are joined");
   if (has_stretch_)
-    file_.warnings.push_back(
-        {{scanner_.path()}, "channel l (stretch of a bone) is not zero; it is ignored"});
+    add_warning(file_.warnings, {scanner_.path()},
+                "channel l (stretch of a bone) is not zero; it is ignored");
   return std::move(file_);
 }
 
@@ -201,7 +201,7 @@ int AmcReader::joint_named(std::string_view name) {
     const int joint = line_order_[line];
     if (skeleton_.skeleton.joint(joint).name == name) return joint;
   }
-  const auto found = joint_by_name_.find(lower_case(name));
+  const auto found = joint_by_name_.find(lower_case(escaped_to_utf8(name)));
   if (found == joint_by_name_.end())
     scanner_.fail(name, "bone " + in_quotes(name) + " is not in " + skeleton_.path.string(),
                   "the .asf belongs to another actor or system");

@@ -53,7 +53,8 @@ class SectionReader {
   void read_bone(std::string_view begin);
   void read_bone_item(std::string_view key, AsfBone& bone);
   void check_bone(AsfBone& bone, std::string_view begin);
-  void read_limits(std::string_view key, const AsfBone& bone);
+  void read_limits(std::string_view key, AsfBone& bone);
+  void check_limits(const AsfBone& bone);
   void read_hierarchy();
   std::vector<AcclaimChannel> read_channels(bool is_root);
   std::array<Axis, 3> read_axis_order();
@@ -61,7 +62,7 @@ class SectionReader {
   void expect_word(std::string_view word);
   void skip_unknown(std::string_view key, std::string_view section);
   void warn(std::string_view token, const std::string& text) {
-    warnings_.push_back({scanner_.location(token), text});
+    add_warning(warnings_, scanner_.location(token), text);
   }
 
   TextScanner& scanner_;
@@ -229,6 +230,7 @@ void SectionReader::read_bone(std::string_view begin) {
     const auto key = scanner_.next();
     if (is_word(key, "end")) {
       check_bone(bone, begin);
+      check_limits(bone);
       sections_.bones.push_back(std::move(bone));
       return;
     }
@@ -278,15 +280,19 @@ void SectionReader::check_bone(AsfBone& bone, std::string_view begin) {
 }
 
 // Pairs of numbers, one a channel, on as many lines as it takes.
-void SectionReader::read_limits(std::string_view key, const AsfBone& bone) {
-  std::size_t count = 0;
+void SectionReader::read_limits(std::string_view key, AsfBone& bone) {
+  bone.limits = key;
+  bone.num_limits = 0;
   while (is_limit(scanner_.peek())) {
     scanner_.next();
-    ++count;
+    ++bone.num_limits;
   }
-  if (count != 2 * bone.channels.size())
-    warn(key, "bone " + in_quotes(bone.name) + " has " + std::to_string(count) + " limits for " +
-                  std::to_string(bone.channels.size()) + " channels");
+}
+
+void SectionReader::check_limits(const AsfBone& bone) {
+  if (bone.limits.empty() || bone.num_limits == 2 * bone.channels.size()) return;
+  warn(bone.limits, "bone " + in_quotes(bone.name) + " has " + std::to_string(bone.num_limits) +
+                        " limits for " + std::to_string(bone.channels.size()) + " channels");
 }
 
 void SectionReader::read_hierarchy() {

@@ -63,8 +63,8 @@ class HierarchyReader {
   void expect_opening_brace(std::string_view after);
   void read_channels(std::string_view keyword);
   int read_channel_count();
-  void warn(FileLocation location, const std::string& text) {
-    warnings_.push_back({std::move(location), text});
+  void warn(const FileLocation& location, const std::string& text) {
+    add_warning(warnings_, location, text);
   }
   [[noreturn]] void fail_truncated(std::string_view token);
 

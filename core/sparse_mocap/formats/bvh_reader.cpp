@@ -58,8 +58,9 @@ void warn_about_renamed(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
     const auto& source = hierarchy.joints[static_cast<std::size_t>(j)];
     const auto& name = skeleton.joint(j).name;
     if (name == source.name) continue;
-    warnings.push_back({source.location, "a second joint named " + in_quotes(source.name) +
-                                             "; it is called " + in_quotes(name)});
+    add_warning(
+        warnings, source.location,
+        "a second joint named " + in_quotes(source.name) + "; it is called " + in_quotes(name));
   }
 }
 
@@ -224,10 +225,9 @@ void MotionReader::check_frame_count() {
   if (rows == 0 && !options_.allow_no_frames)
     throw FormatError(header_.location, "there is no frame, so there is no motion");
   if (rows != header_.declared_frames)
-    warnings_.push_back({header_.location, "the file declares " +
-                                               std::to_string(header_.declared_frames) +
-                                               " frames and has " + std::to_string(rows) +
-                                               "; those that it has are read"});
+    add_warning(warnings_, header_.location,
+                "the file declares " + std::to_string(header_.declared_frames) +
+                    " frames and has " + std::to_string(rows) + "; those that it has are read");
 }
 
 // The rotation that brings an axis up (to y).

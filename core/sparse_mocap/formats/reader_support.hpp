@@ -18,9 +18,17 @@ inline constexpr double kMaxLength_m = 1e5;
 // q followed, in its own frame, by a turn about one axis: q * (axis, angle).
 Quat turned_about(const Quat& q, Axis axis, double angle_rad);
 
+// Records a warning, or counts it with the one of its kind: texts that differ only in what is
+// quoted and in numbers are of one kind.
+void add_warning(std::vector<ReadWarning>& warnings, const FileLocation& location,
+                 const std::string& text);
+
 // The next token as a length of a file whose unit is unit_m, in metres.
 double length_m(TextScanner& scanner, std::string_view what, double unit_m);
 Vec3 lengths_m(TextScanner& scanner, std::string_view what, double unit_m);
+
+// The name with bytes that are not UTF-8 written as \x and two digits.
+std::string escaped_to_utf8(std::string_view name);
 
 // The name that stands at the token, with bytes that are not UTF-8 escaped (recorded as a warning).
 // Throws FormatError when it is longer than 255 bytes.
