@@ -45,6 +45,7 @@ if TYPE_CHECKING:
         site_names,
         standard_joint_names,
         standard_motion,
+        write_acclaim,
         write_bvh,
         write_mapping,
     )
@@ -99,6 +100,7 @@ __all__ = [
     "standard_joint_names",
     "standard_motion",
     "to_standard",
+    "write_acclaim",
     "write_bvh",
     "write_mapping",
     "write_positions",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common.hpp"
+#include "sparse_mocap/formats/acclaim_writer.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
 #include "sparse_mocap/motion/heading.hpp"
@@ -142,6 +143,7 @@ void bind_motion(py::module_& m) {
   m.def("read_motion", &read_motion, py::arg("path"), py::kw_only(), py::arg("amc_rate_hz") = 120.0,
         release());
   m.def("write_bvh", &write_bvh, py::arg("path"), py::arg("motion"), release());
+  m.def("write_acclaim", &write_acclaim, py::arg("path"), py::arg("motion"), release());
 }
 
 }  // namespace sparse_mocap::python

@@ -130,16 +130,20 @@ std::string checked_name(const TextScanner& scanner, std::string_view token, std
   return usable;
 }
 
-std::vector<std::string> unique_names(std::vector<std::string> names) {
-  const std::set<std::string> originals(names.begin(), names.end());
+std::vector<std::string> unique_names(std::vector<std::string> names, NameCase name_case) {
+  const auto key = [&](const std::string& name) {
+    return name_case == NameCase::ignored ? lower_case(name) : name;
+  };
+  std::set<std::string> originals;
+  for (const auto& name : names) originals.insert(key(name));
   std::set<std::string> taken;
   for (auto& name : names) {
     std::string candidate = name;
-    for (int number = 2;
-         taken.contains(candidate) || (candidate != name && originals.contains(candidate));
+    for (int number = 2; taken.contains(key(candidate)) ||
+                         (candidate != name && originals.contains(key(candidate)));
          ++number)
       candidate = name + "_" + std::to_string(number);
-    taken.insert(candidate);
+    taken.insert(key(candidate));
     name = std::move(candidate);
   }
   return names;

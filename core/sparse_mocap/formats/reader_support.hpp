@@ -35,8 +35,11 @@ std::string escaped_to_utf8(std::string_view name);
 std::string checked_name(const TextScanner& scanner, std::string_view token, std::string_view name,
                          std::vector<ReadWarning>& warnings);
 
+enum class NameCase { counts, ignored };
+
 // The names with a suffix (_2, _3, ...) at each repetition; distinct names stay as they are.
-std::vector<std::string> unique_names(std::vector<std::string> names);
+std::vector<std::string> unique_names(std::vector<std::string> names,
+                                      NameCase name_case = NameCase::counts);
 
 // Warns when a figure in this pose is far from human size, and says which unit would make it so.
 void warn_about_size(const JointTransforms& pose, double unit_m, const FileLocation& location,
