@@ -97,6 +97,7 @@ class AcclaimWriter {
   void check() const;
   void make_bones();
   void make_unique_names();
+  Vec3 bone_of(int joint) const;
   int add_fixed_bone(const std::string& name, int parent, const Vec3& vector);
   int add_joint(int index, int parent, const OffsetTrack* track);
   Joint turning_of(int joint) const;
@@ -150,12 +151,27 @@ void AcclaimWriter::make_bones() {
   for (int j = 0; j < skeleton_.num_joints(); ++j) {
     const Joint& joint = skeleton_.joint(j);
     int parent = j == 0 ? -1 : bone_of_joint[static_cast<std::size_t>(joint.parent)];
-    if (j > 0 && !joint.offset_parent.isZero(0.0))
-      parent = add_fixed_bone(joint.name + "_offset", parent, joint.offset_parent);
+    if (j > 0) {
+      const Vec3 added = bone_of(joint.parent) - skeleton_.joint(joint.parent).bone;
+      const Vec3 remaining = joint.offset_parent - added;
+      if (!remaining.isZero(0.0))
+        parent = add_fixed_bone(joint.name + "_offset", parent, remaining);
+    }
     int last = add_joint(j, parent, j == 0 ? nullptr : tracks[static_cast<std::size_t>(j)]);
     if (j == 0 && !joint.bone.isZero(0.0)) last = add_fixed_bone("root_bone", last, joint.bone);
     bone_of_joint.push_back(last);
   }
+}
+
+// From the joint's pivot to where its bone ends in the file.
+Vec3 AcclaimWriter::bone_of(int index) const {
+  const Vec3& own = skeleton_.joint(index).bone;
+  if (index == 0 || !own.isZero(0.0)) return own;
+  const auto& joints = skeleton_.joints();
+  const auto child = std::ranges::find_if(joints, [&](const Joint& joint) {
+    return joint.parent == index && !joint.offset_parent.isZero(0.0);
+  });
+  return child == joints.end() ? own : child->offset_parent;
 }
 
 int AcclaimWriter::add_fixed_bone(const std::string& name, int parent, const Vec3& vector) {
@@ -169,7 +185,7 @@ int AcclaimWriter::add_fixed_bone(const std::string& name, int parent, const Vec
 
 int AcclaimWriter::add_joint(int index, int parent, const OffsetTrack* track) {
   const Joint& joint = skeleton_.joint(index);
-  const int added = add_fixed_bone(index == 0 ? "root" : joint.name, parent, joint.bone);
+  const int added = add_fixed_bone(index == 0 ? "root" : joint.name, parent, bone_of(index));
   auto& bone = bones_.back();
   bone.turning = turning_of(index);
   bone.joint = index;

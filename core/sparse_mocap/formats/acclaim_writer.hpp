@@ -13,8 +13,10 @@ namespace sparse_mocap {
 // A skeleton read from Acclaim comes back as it was: bones, axes and degrees of freedom. Otherwise:
 // - The root is called "root", as the format wants it; a bone of the root becomes the fixed bone
 //   "root_bone".
-// - Each joint is a bone (of no length where it has none). Its offset from its parent, which
-//   Acclaim does not have, becomes a fixed bone before it, "<joint>_offset".
+// - Each joint is a bone. One without a length of its own, as BVH has them, reaches to its first
+//   child that lies elsewhere. What offset then remains between a joint and the end of its parent's
+//   bone, which Acclaim does not know, becomes a fixed bone before the joint, "<joint>_offset".
+//   The joints' pivots stay where they are.
 // - A joint that moves (an offset track) has tx ty tz as well; many readers ignore those.
 // - A joint that turns otherwise than its axes allow has rx ry rz.
 // - Names get '_' for what separates words in the format, and a number where only case tells them

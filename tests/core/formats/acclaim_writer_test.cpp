@@ -43,7 +43,8 @@ Motion read_bvh_text(const std::string& text) {
   return read_bvh(folder.write("walk.bvh", text), {.bvh_unit_m = 1.0}).motion;
 }
 
-// Joints of the same name (the roots are one) are at the same places in every frame.
+// Joints of the same name (the roots are one) have the same pivots and rotations in every frame,
+// and those with a bone the same ends.
 void expect_same_places(const Motion& actual, const Motion& expected) {
   ASSERT_EQ(actual.num_frames(), expected.num_frames());
   EXPECT_NEAR(actual.frame_time_s, expected.frame_time_s, 1e-12);
@@ -57,7 +58,7 @@ void expect_same_places(const Motion& actual, const Motion& expected) {
       const auto a = static_cast<std::size_t>(found);
       const auto b = static_cast<std::size_t>(j);
       EXPECT_LT((to.pivot[a] - from.pivot[b]).norm(), 1e-6) << name;
-      if (j > 0) {
+      if (j > 0 && !expected.skeleton.joint(j).bone.isZero(0.0)) {
         EXPECT_LT((to.end[a] - from.end[b]).norm(), 1e-6) << name;
       }
       EXPECT_LT((to.R_world_joint[a] - from.R_world_joint[b]).norm(), 1e-6) << name;
@@ -143,13 +144,32 @@ TEST(WriteAcclaim, ABvhMotionComesBackWithABoneForEveryOffset) {
   const auto again = written_and_read(motion).motion;
   expect_same_places(again, motion);
   const auto& skeleton = again.skeleton;
-  EXPECT_EQ(skeleton.num_joints(), 8);
+  EXPECT_EQ(skeleton.num_joints(), 7);
   EXPECT_EQ(skeleton.joint(skeleton.find("Spine")).parent, skeleton.find("Spine_offset"));
+  EXPECT_EQ(skeleton.joint(skeleton.find("Foot")).parent, skeleton.find("Leg"));
+  EXPECT_TRUE(skeleton.joint(skeleton.find("Leg")).bone.isApprox(Vec3(0, -0.4, 0)));
   EXPECT_EQ(skeleton.joint(skeleton.find("Still")).parent, 0);
   EXPECT_TRUE(skeleton.joint(skeleton.find("Still")).axes.empty());
   EXPECT_EQ(skeleton.joint(skeleton.find("Foot")).axes, std::vector<Axis>{Axis::x});
   EXPECT_EQ(again.offset_tracks.size(), 1U);
   expect_same_skeleton(written_and_read(again).motion.skeleton, skeleton);
+}
+
+TEST(WriteAcclaim, AJointWithSeveralChildrenReachesToTheFirst) {
+  const auto motion = read_bvh_text(
+      "HIERARCHY ROOT A { OFFSET 0 0 0 CHANNELS 1 Xrotation JOINT B { OFFSET 0 1 0 CHANNELS 3 "
+      "Zrotation Yrotation Xrotation JOINT C { OFFSET 0 0 0 CHANNELS 1 Yrotation } JOINT D { "
+      "OFFSET 0.1 0.2 0.3 CHANNELS 1 Yrotation } JOINT E { OFFSET 0.3 0.2 0.5 CHANNELS 1 Yrotation "
+      "} } }\nMOTION Frames: 1 Frame Time: 0.1\n90 10 20 30 40 50 60");
+  const auto again = written_and_read(motion).motion;
+  expect_same_places(again, motion);
+  const auto bone_of = [&](const std::string& name) {
+    return again.skeleton.joint(again.skeleton.find(name)).bone;
+  };
+  EXPECT_TRUE(bone_of("B").isApprox(Vec3(0.1, 0.2, 0.3)));
+  EXPECT_TRUE(bone_of("C_offset").isApprox(Vec3(-0.1, -0.2, -0.3)));
+  EXPECT_EQ(again.skeleton.find("D_offset"), -1);
+  EXPECT_TRUE(bone_of("E_offset").isApprox(Vec3(0.2, 0, 0.2)));
 }
 
 TEST(WriteAcclaim, ABoneOfTheRootBecomesAFixedBone) {
