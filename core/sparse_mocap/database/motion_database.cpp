@@ -129,6 +129,7 @@ class DatabaseReader {
       clip.is_mirrored = entry.at("mirrored").get<bool>();
       clip.is_reversed = entry.at("reversed").get<bool>();
       clip.tempo = entry.at("tempo").get<double>();
+      if (!(clip.tempo > 0.0)) refuse("the tempo of clip '" + clip.name + "' is not positive");
       clip.begin = entry.at("begin").get<int>();
       clip.end = entry.at("end").get<int>();
       if (clip.begin != expected_begin || clip.end <= clip.begin ||

@@ -257,7 +257,13 @@ void AmcReader::check_complete(std::string_view frame_token) const {
 MotionFile read_amc(const std::filesystem::path& amc_path, const AcclaimSkeleton& skeleton,
                     const ReadOptions& options) {
   options.validate();
-  TextScanner scanner(amc_path, read_file(amc_path, options.max_bytes), kAcclaimSyntax);
+  return amc_from_text(read_file(amc_path, options.max_bytes), amc_path, skeleton, options);
+}
+
+MotionFile amc_from_text(std::string text, const std::filesystem::path& amc_path,
+                         const AcclaimSkeleton& skeleton, const ReadOptions& options) {
+  options.validate();
+  TextScanner scanner(amc_path, std::move(text), kAcclaimSyntax);
   return AmcReader(scanner, skeleton, options).read();
 }
 

@@ -145,13 +145,22 @@ void build_skeleton(const TextScanner& scanner, const AsfSections& sections,
 
 AcclaimSkeleton read_asf(const std::filesystem::path& path, const ReadOptions& options) {
   options.validate();
-  TextScanner scanner(path, read_file(path, options.max_bytes), kAcclaimSyntax);
+  return asf_from_text(read_file(path, options.max_bytes), path, options);
+}
+
+AcclaimSkeleton asf_from_text(std::string text, const std::filesystem::path& path,
+                              const ReadOptions& options) {
+  options.validate();
+  TextScanner scanner(path, std::move(text), kAcclaimSyntax);
   AcclaimSkeleton result;
   result.path = path;
   const auto sections = read_asf_sections(scanner, options, result.warnings);
   result.metres_per_unit = kInch_m / sections.length_unit;
   result.radians_per_angle = sections.is_in_degrees ? kRadiansPerDegree : 1.0;
   result.root_position = sections.root.position * result.metres_per_unit;
+  if (result.root_position.cwiseAbs().maxCoeff() > kMaxLength_m)
+    scanner.fail(sections.root.position_key, "the position of the root is too large to be a place",
+                 "check the number and the unit of the file");
   build_skeleton(scanner, sections, options, result);
   warn_about_size(rest_pose(result.skeleton), result.metres_per_unit, {path}, result.warnings);
   return result;

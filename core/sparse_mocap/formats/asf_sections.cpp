@@ -161,6 +161,7 @@ void SectionReader::read_root() {
       root.axis_order = read_axis_order();
     } else if (is_word(key, "position")) {
       root.position = read_vector("3 numbers after position");
+      root.position_key = key;
     } else if (is_word(key, "orientation")) {
       root.orientation_angles = read_vector("3 numbers after orientation");
     } else {

@@ -29,6 +29,7 @@ struct AsfBone {
 struct AsfRoot {
   std::vector<AcclaimChannel> channels;
   Vec3 position = Vec3::Zero();
+  std::string_view position_key;  // where it is given; empty where it is not
   Vec3 orientation_angles = Vec3::Zero();
   std::array<Axis, 3> axis_order{Axis::x, Axis::y, Axis::z};
 };

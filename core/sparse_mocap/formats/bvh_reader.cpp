@@ -256,7 +256,13 @@ void change_basis(Motion& motion, const Quat& C) {
 
 MotionFile read_bvh(const std::filesystem::path& path, const ReadOptions& options) {
   options.validate();
-  TextScanner scanner(path, read_file(path, options.max_bytes), {.punctuation = "{}"});
+  return bvh_from_text(read_file(path, options.max_bytes), path, options);
+}
+
+MotionFile bvh_from_text(std::string text, const std::filesystem::path& path,
+                         const ReadOptions& options) {
+  options.validate();
+  TextScanner scanner(path, std::move(text), {.punctuation = "{}"});
   MotionFile file;
   const auto hierarchy = read_bvh_hierarchy(scanner, options, file.warnings);
   file.motion.skeleton = skeleton_of(hierarchy);

@@ -197,6 +197,18 @@ TEST(MotionDatabase, RefusesClipsThatDoNotCoverTheFrames) {
       "names another clip"));
 }
 
+TEST(MotionDatabase, RefusesATempoThatIsNotPositive) {
+  const auto file = encode_database(small_content(6));
+  for (const double tempo : {0.0, -1.0})
+    EXPECT_TRUE(contains(complaint(forged(file,
+                                          [&](Metadata& metadata, Arrays&) {
+                                            auto clips = nlohmann::json::parse(metadata["clips"]);
+                                            clips[0]["tempo"] = tempo;
+                                            metadata["clips"] = clips.dump();
+                                          })),
+                         "is not positive"));
+}
+
 TEST(MotionDatabase, RefusesValuesThatAreNoNumbers) {
   const auto file = encode_database(small_content(4));
   for (const float bad :

@@ -205,6 +205,12 @@ TEST(ReadAsfRefuses, BadSections) {
   EXPECT_EQ(error_in("\xFF\xFE"), "1: :1:1: is UTF-16 text; save it as UTF-8");
 }
 
+TEST(ReadAsfRefuses, ARootThatIsNowhere) {
+  EXPECT_EQ(error_with("position 0 0 0", "position 0 1e30 0"),
+            "13: :13:3: the position of the root is too large to be a place; check the number and "
+            "the unit of the file");
+}
+
 TEST(ReadAsfRefuses, EveryTruncation) {
   const TemporaryFolder folder;
   for (std::size_t length = 0; length + 1 < kAsf.size(); ++length) {

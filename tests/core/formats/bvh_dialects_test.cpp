@@ -20,7 +20,7 @@ using testing::TemporaryFolder;
 
 MotionFile read_text(const std::string& text, ReadOptions options = {.bvh_unit_m = 1.0}) {
   const TemporaryFolder folder;
-  return read_bvh(folder.write("walk.bvh", text), options);
+  return testing::sound(read_bvh(folder.write("walk.bvh", text), options));
 }
 
 // A chain of six joints, 1 m apart along y; joint i turns in the i-th order by the textbook angles.

@@ -22,7 +22,7 @@ using testing::TemporaryFolder;
 
 MotionFile read_text(const std::string& text, ReadOptions options = {.bvh_unit_m = 1.0}) {
   const TemporaryFolder folder;
-  return read_bvh(folder.write("walk.bvh", text), options);
+  return testing::sound(read_bvh(folder.write("walk.bvh", text), options));
 }
 
 const std::string kTwoJoints =

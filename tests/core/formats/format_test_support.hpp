@@ -8,8 +8,10 @@
 #include <fstream>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "sparse_mocap/formats/motion_file.hpp"
+#include "support/invariants.hpp"
 
 namespace sparse_mocap::testing {
 
@@ -65,6 +67,13 @@ inline bool has_warning(const MotionFile& file, const std::string& part) {
   for (const auto& warning : file.warnings)
     if (contains(warning.text, part)) return true;
   return false;
+}
+
+// The file itself, after a check of what must hold of every motion that is read.
+inline MotionFile sound(MotionFile file) {
+  EXPECT_EQ(joined(check_motion(file.motion)), "");
+  for (const auto& warning : file.warnings) EXPECT_GE(warning.count, 1) << warning.message();
+  return file;
 }
 
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
