@@ -45,6 +45,7 @@ std::string problem_of(const FormatError& error, bool has_lines) {
   if (!what.starts_with(location.path.string())) return "the error does not begin with the file";
   if (what.find_first_of("\r\n") != std::string::npos) return "the error has several lines";
   if (has_lines && location.line < 1) return "the error names no line";
+  if (what.find("; ") == std::string::npos) return "the error names no remedy";
   return "";
 }
 

@@ -23,7 +23,8 @@ std::map<std::string, int> nodes_by_name(const TextScanner& scanner, const AsfSe
   for (std::size_t i = 0; i < sections.bones.size(); ++i) {
     const auto& bone = sections.bones[i];
     if (!nodes.emplace(lower_case(bone.token), static_cast<int>(i) + 1).second)
-      scanner.fail(bone.token, "a second bone is named " + in_quotes(bone.name));
+      scanner.fail(bone.token, "a second bone is named " + in_quotes(bone.name),
+                   "give it another name");
   }
   return nodes;
 }
@@ -33,7 +34,8 @@ Tree resolve_tree(const TextScanner& scanner, const AsfSections& sections) {
   const auto node_of = [&](std::string_view name) {
     const auto found = nodes.find(lower_case(name));
     if (found == nodes.end())
-      scanner.fail(name, "bone " + in_quotes(name) + " is not defined in :bonedata");
+      scanner.fail(name, "bone " + in_quotes(name) + " is not defined in :bonedata",
+                   "define it there, or leave it out");
     return found->second;
   };
   Tree tree{std::vector<int>(nodes.size(), -1), std::vector<std::vector<int>>(nodes.size())};
@@ -41,9 +43,10 @@ Tree resolve_tree(const TextScanner& scanner, const AsfSections& sections) {
     const int parent = node_of(family.parent);
     for (const auto name : family.children) {
       const int child = node_of(name);
-      if (child == kRoot) scanner.fail(name, "the root cannot be a child");
+      if (child == kRoot) scanner.fail(name, "the root cannot be a child", "leave it out");
       auto& known_parent = tree.parents[static_cast<std::size_t>(child)];
-      if (known_parent >= 0) scanner.fail(name, "bone " + in_quotes(name) + " has two parents");
+      if (known_parent >= 0)
+        scanner.fail(name, "bone " + in_quotes(name) + " has two parents", "name it once");
       known_parent = parent;
       tree.children[static_cast<std::size_t>(parent)].push_back(child);
     }
@@ -69,7 +72,8 @@ std::vector<int> depth_first_order(const TextScanner& scanner, const AsfSections
     const auto& children = tree.children[static_cast<std::size_t>(node)];
     if (depth >= max_depth && !children.empty())
       scanner.fail(sections.bones[static_cast<std::size_t>(children[0]) - 1].token,
-                   "bones are nested deeper than " + std::to_string(max_depth));
+                   "bones are nested deeper than " + std::to_string(max_depth),
+                   "raise the limit max_depth if it is meant so");
     for (auto child = children.rbegin(); child != children.rend(); ++child)
       pending.push_back({*child, depth + 1});
   }
@@ -79,7 +83,8 @@ std::vector<int> depth_first_order(const TextScanner& scanner, const AsfSections
     scanner.fail(
         bone.token,
         "bone " + in_quotes(bone.name) + " cannot be reached from the root: :hierarchy " +
-            (tree.parents[i + 1] < 0 ? "does not mention it as a child" : "has a cycle above it"));
+            (tree.parents[i + 1] < 0 ? "does not mention it as a child" : "has a cycle above it"),
+        "name each bone once as a child");
   }
   return order;
 }

@@ -121,8 +121,10 @@ Vec3 lengths_m(TextScanner& scanner, std::string_view what, double unit_m) {
 std::string checked_name(const TextScanner& scanner, std::string_view token, std::string_view name,
                          std::vector<ReadWarning>& warnings) {
   if (name.size() > kMaxNameBytes)
-    scanner.fail(token, "a name has " + std::to_string(name.size()) + " bytes, at most " +
-                            std::to_string(kMaxNameBytes) + " are accepted");
+    scanner.fail(token,
+                 "a name has " + std::to_string(name.size()) + " bytes, at most " +
+                     std::to_string(kMaxNameBytes) + " are accepted",
+                 "shorten it");
   auto usable = escaped_to_utf8(name);
   if (usable != name)
     add_warning(warnings, scanner.location(token),

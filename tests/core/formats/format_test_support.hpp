@@ -45,6 +45,7 @@ class TemporaryFolder {
 };
 
 // What the call complains about: "line: message", the message without the path; "" if it does not.
+// A message is one line; one that names a line of a file also says, after a semicolon, what to do.
 template <typename Call>
 std::string error_of(const Call& call) {
   try {
@@ -54,6 +55,9 @@ std::string error_of(const Call& call) {
     const auto path = error.location().path.string();
     EXPECT_TRUE(what.starts_with(path)) << what;
     EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+    if (error.location().line > 0) {
+      EXPECT_NE(what.find("; "), std::string::npos) << what << " has no remedy";
+    }
     return std::to_string(error.location().line) + ": " + what.substr(path.size());
   }
   return "";
