@@ -49,6 +49,7 @@ if TYPE_CHECKING:
         site_names,
         standard_joint_names,
         standard_motion,
+        write_acclaim,
         write_bvh,
         write_mapping,
     )
@@ -107,6 +108,7 @@ __all__ = [
     "standard_joint_names",
     "standard_motion",
     "to_standard",
+    "write_acclaim",
     "write_bvh",
     "write_mapping",
     "write_positions",

@@ -69,6 +69,12 @@ def read_motion(
 def write_bvh(path: Path, motion: Motion) -> None:
     """Writes atomically, in centimetres."""
 
+def write_acclaim(path: Path, motion: Motion) -> None:
+    """Writes path (.amc) and the skeleton beside it (.asf), each atomically, in inches / 0.45.
+
+    Offsets of joints become fixed bones. Raises FormatError for what Acclaim cannot hold.
+    """
+
 class HumanoidMapping:
     """How a foreign skeleton carries the standard one of 21 joints."""
 

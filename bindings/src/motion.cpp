@@ -2,6 +2,7 @@
 #include "common.hpp"
 #include "sparse_mocap/base/text_scanner.hpp"
 #include "sparse_mocap/formats/acclaim.hpp"
+#include "sparse_mocap/formats/acclaim_writer.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
 #include "sparse_mocap/motion/heading.hpp"
@@ -154,8 +155,7 @@ std::pair<Motion, std::vector<std::string>> read_motion(
   MotionFile file = is_acclaim ? read_acclaim(path, asf, unit_m, options.bvh_up, options)
                                : read_motion_file(path, options);
   std::vector<std::string> warnings;
-  for (const auto& warning : file.warnings)
-    warnings.emplace_back(FormatError(warning.location, warning.text).what());
+  for (const auto& warning : file.warnings) warnings.push_back(warning.message());
   return {std::move(file.motion), std::move(warnings)};
 }
 
@@ -213,6 +213,7 @@ void bind_motion(py::module_& m) {
         py::arg("unit_m") = py::none(), py::arg("up") = "y", py::arg("asf") = py::none(),
         py::arg("allow_no_frames") = false, release());
   m.def("write_bvh", &write_bvh, py::arg("path"), py::arg("motion"), release());
+  m.def("write_acclaim", &write_acclaim, py::arg("path"), py::arg("motion"), release());
 }
 
 }  // namespace sparse_mocap::python

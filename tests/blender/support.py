@@ -152,6 +152,14 @@ def evaluated_points(armature, frame: float, names: list[str]) -> np.ndarray:
     return np.array([evaluated.matrix_world @ point for point in points])
 
 
+def evaluated_pivots(armature, frame: int, names: list[str]) -> np.ndarray:
+    """(J, 3) where the bones begin in the world at a frame, Blender's axes."""
+    bpy.context.scene.frame_set(frame)
+    evaluated = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    heads = [evaluated.pose.bones[name].head for name in names]
+    return np.array([evaluated.matrix_world @ head for head in heads])
+
+
 def in_blenders_axes(positions) -> np.ndarray:
     """Written out anew, as the oracle: (x, y, z) of the core is (x, -z, y)."""
     x, y, z = np.moveaxis(np.asarray(positions), -1, 0)

@@ -8,7 +8,14 @@ from pathlib import Path
 import click
 import numpy as np
 
-from .. import MotionDatabase, read_motion, to_standard, write_bvh, write_positions
+from .. import (
+    MotionDatabase,
+    read_motion,
+    to_standard,
+    write_acclaim,
+    write_bvh,
+    write_positions,
+)
 from .console import warn
 from .options import FilePath, check_ending, frame_option
 
@@ -17,7 +24,8 @@ from .options import FilePath, check_ending, frame_option
 @click.argument("clip", metavar="CLIP", type=FilePath)
 @click.option(
     "-o", "--output", type=FilePath, required=True,
-    help="OUT.bvh, or OUT.csv for a table of the standard joints' positions.",
+    help="OUT.bvh; OUT.amc, with its skeleton OUT.asf beside it; or OUT.csv for a table of the"
+    " standard joints' positions.",
 )  # fmt: skip
 @click.option(
     "--skeleton", metavar="own|DB.smdb", default="own", show_default=True,
@@ -28,7 +36,7 @@ from .options import FilePath, check_ending, frame_option
 @click.option("--fps", type=float, help="Resamples to so many frames a second.")
 def convert(clip: Path, output: Path, skeleton: str, frame: str, fps: float | None) -> None:
     """Converts a motion file, .bvh or .amc."""
-    ending = check_ending(output, ".bvh", ".csv")
+    ending = check_ending(output, ".bvh", ".amc", ".csv")
     motion, warnings = read_motion(clip)
     if skeleton != "own":
         motion, more = to_standard(motion, MotionDatabase(skeleton).skeleton)
@@ -40,6 +48,8 @@ def convert(clip: Path, output: Path, skeleton: str, frame: str, fps: float | No
         motion = motion.resampled(fps)
     if ending == ".bvh":
         write_bvh(output, motion)
+    elif ending == ".amc":
+        write_acclaim(output, motion)
     else:
         times = np.arange(motion.num_frames) * motion.frame_time_s
         write_positions(output, times, motion.skeleton.names, motion.joint_positions(frame))

@@ -101,13 +101,17 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
   std::error_code error;
   const auto status = fs::status(path, error);
   if (!fs::exists(status)) throw FormatError({path}, "no such file", "check the path");
-  if (fs::is_directory(status)) throw FormatError({path}, "is a folder, not a file");
-  if (!fs::is_regular_file(status)) throw FormatError({path}, "is not a regular file");
+  if (fs::is_directory(status))
+    throw FormatError({path}, "is a folder, not a file", "name a file in it");
+  if (!fs::is_regular_file(status))
+    throw FormatError({path}, "is not a regular file", "name a file");
   const auto size = fs::file_size(path, error);
   if (error) throw FormatError({path}, "cannot be read: " + error.message());
   if (size > max_bytes) {
-    throw FormatError({path}, "has " + std::to_string(size) + " bytes, more than the limit of " +
-                                  std::to_string(max_bytes));
+    throw FormatError({path},
+                      "has " + std::to_string(size) + " bytes, more than the limit of " +
+                          std::to_string(max_bytes),
+                      "raise the limit max_bytes if it is meant so");
   }
   std::FILE* file = std::fopen(path.string().c_str(), "rb");
   if (file == nullptr) {

@@ -121,7 +121,8 @@ void TextScanner::refuse_binary() const {
   if (nul < 2 && text_.size() > 3 && text_[nul ^ 1U] != '\0' && text_[nul + 2] == '\0')
     throw FormatError({path_, 1, 1}, "is UTF-16 text", "save it as UTF-8");
   const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<long>(nul), '\n');
-  throw FormatError({path_, static_cast<int>(line), 0}, "holds a NUL byte, so it is not text");
+  throw FormatError({path_, static_cast<int>(line), 0}, "holds a NUL byte, so it is not text",
+                    "save it as text");
 }
 
 void TextScanner::skip_blanks_on_line() {
@@ -198,10 +199,13 @@ double TextScanner::number_or_fail(std::string_view token, std::string_view what
   const auto status = parse_number(token, value);
   if (status == NumberStatus::ok) return value;
   const std::string expected = "expected " + std::string(what) + ", ";
-  if (token.empty()) fail(token, expected + "but the file ends");
-  if (status == NumberStatus::too_large) fail(token, in_quotes(token) + " is too large a number");
-  const char* remedy =
-      has_decimal_comma(token) ? "it has a decimal comma; write numbers with a point" : "";
+  if (token.empty())
+    fail(token, expected + "but the file ends", "the file may be cut off; export it again");
+  if (status == NumberStatus::too_large)
+    fail(token, in_quotes(token) + " is too large a number", "check the number");
+  const char* remedy = has_decimal_comma(token)
+                           ? "it has a decimal comma; write numbers with a point"
+                           : "write a decimal number such as -1.5";
   fail(token, expected + "got " + in_quotes(token), remedy);
 }
 

@@ -148,7 +148,7 @@ Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& ha
     Clip clip = clip_of(file, hashes, read.motion);
     clip.skeleton = out.skeleton.id;
     for (const auto& warning : read.warnings) {
-      out.warnings.emplace_back(FormatError(warning.location, warning.text).what());
+      out.warnings.push_back(warning.message());
       ++clip.warnings[kind_of_warning(warning.text)];
     }
     for (const auto& text : texts) {

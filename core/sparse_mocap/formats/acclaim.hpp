@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "sparse_mocap/formats/motion_file.hpp"
@@ -29,6 +30,9 @@ struct AcclaimSkeleton {
 
 // Throws FormatError with line and column.
 AcclaimSkeleton read_asf(const std::filesystem::path& path, const ReadOptions& options = {});
+// The same on text that is (or will be) such a file; path is for messages.
+AcclaimSkeleton asf_from_text(std::string text, const std::filesystem::path& path,
+                              const ReadOptions& options = {});
 
 // The skeleton that belongs to an .amc: in its folder the .asf whose name is the longest start of
 // the .amc's name that ends before a '_' (HDM_bd.asf for HDM_bd_squat_001_120.amc, 02.asf for
@@ -40,5 +44,7 @@ std::filesystem::path find_asf(const std::filesystem::path& amc_path);
 // warning where it is not zero. Throws FormatError with line and column.
 MotionFile read_amc(const std::filesystem::path& amc_path, const AcclaimSkeleton& skeleton,
                     const ReadOptions& options = {});
+MotionFile amc_from_text(std::string text, const std::filesystem::path& amc_path,
+                         const AcclaimSkeleton& skeleton, const ReadOptions& options = {});
 
 }  // namespace sparse_mocap

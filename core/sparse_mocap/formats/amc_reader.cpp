@@ -42,7 +42,7 @@ class AmcReader {
   void check_complete(std::string_view frame_token) const;
   std::string frame_name() const { return "frame " + std::to_string(frame_number_); }
   void warn(std::string_view token, const std::string& text) {
-    file_.warnings.push_back({scanner_.location(token), text});
+    add_warning(file_.warnings, scanner_.location(token), text);
   }
 
   TextScanner& scanner_;
@@ -85,19 +85,20 @@ MotionFile AmcReader::read() {
   read_header();
   while (!scanner_.at_end()) read_frame();
   if (file_.motion.num_frames() == 0 && !options_.allow_no_frames)
-    scanner_.fail(scanner_.here(), "there is no frame, so there is no motion");
+    scanner_.fail(scanner_.here(), "there is no frame, so there is no motion",
+                  "export the frames, or ask for the skeleton alone");
   if (missing_frames_ > 0)
-    file_.warnings.push_back({{scanner_.path()},
-                              std::to_string(missing_frames_) +
-                                  " frame numbers are missing; the frames around are joined"});
+    add_warning(file_.warnings, {scanner_.path()},
+                std::to_string(missing_frames_) +
+                    " frame numbers are missing; the frames around are joined");
   if (has_stretch_)
-    file_.warnings.push_back(
-        {{scanner_.path()}, "channel l (stretch of a bone) is not zero; it is ignored"});
+    add_warning(file_.warnings, {scanner_.path()},
+                "channel l (stretch of a bone) is not zero; it is ignored");
   return std::move(file_);
 }
 
 void AmcReader::read_header() {
-  if (scanner_.at_end()) scanner_.fail(scanner_.here(), "the file is empty");
+  if (scanner_.at_end()) scanner_.fail(scanner_.here(), "the file is empty", "export it again");
   bool is_fully_specified = false;
   bool has_unit = false;
   while (scanner_.peek().starts_with(':')) {
@@ -128,7 +129,7 @@ void AmcReader::read_sample_rate() {
   const auto token = scanner_.peek();
   const double rate_hz = scanner_.number("a number after :SAMPLES-PER-SECOND");
   if (rate_hz < kSmallestRate_hz || rate_hz > kLargestRate_hz)
-    scanner_.fail(token, "the rate must be from 1 to 10000 samples a second");
+    scanner_.fail(token, "the rate must be from 1 to 10000 samples a second", "correct it");
   file_.motion.frame_time_s = 1.0 / rate_hz;
 }
 
@@ -141,17 +142,21 @@ bool AmcReader::at_frame_number() {
 void AmcReader::read_frame_number() {
   const auto token = scanner_.peek();
   if (token.starts_with(':'))
-    scanner_.fail(token, "a second header " + in_quotes(token) + " after " + frame_name());
+    scanner_.fail(token, "a second header " + in_quotes(token) + " after " + frame_name(),
+                  "remove it, or cut the file in two");
   const double number = scanner_.number("a frame number");
   const bool is_number = number >= 0 && number <= 1e15 && number == std::floor(number);
   if (!is_number || !scanner_.at_line_end())
-    scanner_.fail(token, "expected a frame number alone on its line, got " + in_quotes(token));
+    scanner_.fail(token, "expected a frame number alone on its line, got " + in_quotes(token),
+                  "number the frames 1, 2, 3 and so on");
   const auto next = static_cast<long long>(number);
   if (file_.motion.num_frames() > 0) {
-    if (next == frame_number_) scanner_.fail(token, frame_name() + " is there twice");
+    if (next == frame_number_)
+      scanner_.fail(token, frame_name() + " is there twice", "remove one of them");
     if (next < frame_number_)
-      scanner_.fail(token, "frame number " + std::string(token) + " follows " +
-                               std::to_string(frame_number_));
+      scanner_.fail(
+          token, "frame number " + std::string(token) + " follows " + std::to_string(frame_number_),
+          "put the frames in order");
     if (next > frame_number_ + 1 && missing_frames_ == 0)
       warn(token,
            "frame number " + std::string(token) + " follows " + std::to_string(frame_number_));
@@ -166,7 +171,8 @@ void AmcReader::read_frame() {
   read_frame_number();
   const int most = max_frames_of(motion.skeleton.num_joints(), options_);
   if (motion.num_frames() >= most)
-    scanner_.fail(frame_token, "there are more frames than the limit of " + std::to_string(most));
+    scanner_.fail(frame_token, "there are more frames than the limit of " + std::to_string(most),
+                  "raise the limit max_frames if it is meant so");
   motion.rotations.resize(motion.rotations.size() + R_axes_.size(), Quat::Identity());
   motion.root_positions.emplace_back(skeleton_.root_position);
   for (auto& track : motion.offset_tracks) track.offset_parent.emplace_back(Vec3::Zero());
@@ -180,7 +186,8 @@ void AmcReader::read_frame() {
 void AmcReader::read_bone_line(std::string_view name) {
   const auto joint = static_cast<std::size_t>(joint_named(name));
   if (is_given_[joint])
-    scanner_.fail(name, "bone " + in_quotes(name) + " is twice in " + frame_name());
+    scanner_.fail(name, "bone " + in_quotes(name) + " is twice in " + frame_name(),
+                  "remove one of the lines");
   is_given_[joint] = 1;
   const auto& channels = skeleton_.channels[joint];
   Values values{};
@@ -201,7 +208,7 @@ int AmcReader::joint_named(std::string_view name) {
     const int joint = line_order_[line];
     if (skeleton_.skeleton.joint(joint).name == name) return joint;
   }
-  const auto found = joint_by_name_.find(lower_case(name));
+  const auto found = joint_by_name_.find(lower_case(escaped_to_utf8(name)));
   if (found == joint_by_name_.end())
     scanner_.fail(name, "bone " + in_quotes(name) + " is not in " + skeleton_.path.string(),
                   "the .asf belongs to another actor or system");
@@ -234,7 +241,8 @@ Vec3 AmcReader::translation(std::size_t joint, const Values& values) const {
       result[static_cast<int>(channels[i]) - static_cast<int>(AcclaimChannel::tx)] =
           values[i] * skeleton_.metres_per_unit;
   if (result.cwiseAbs().maxCoeff() > kMaxLength_m)
-    scanner_.fail(scanner_.here(), "a position in " + frame_name() + " is too large to be a place");
+    scanner_.fail(scanner_.here(), "a position in " + frame_name() + " is too large to be a place",
+                  "check the number and the unit of the .asf");
   return result;
 }
 
@@ -257,7 +265,13 @@ void AmcReader::check_complete(std::string_view frame_token) const {
 MotionFile read_amc(const std::filesystem::path& amc_path, const AcclaimSkeleton& skeleton,
                     const ReadOptions& options) {
   options.validate();
-  TextScanner scanner(amc_path, read_file(amc_path, options.max_bytes), kAcclaimSyntax);
+  return amc_from_text(read_file(amc_path, options.max_bytes), amc_path, skeleton, options);
+}
+
+MotionFile amc_from_text(std::string text, const std::filesystem::path& amc_path,
+                         const AcclaimSkeleton& skeleton, const ReadOptions& options) {
+  options.validate();
+  TextScanner scanner(amc_path, std::move(text), kAcclaimSyntax);
   return AmcReader(scanner, skeleton, options).read();
 }
 

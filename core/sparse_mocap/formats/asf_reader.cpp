@@ -23,7 +23,8 @@ std::map<std::string, int> nodes_by_name(const TextScanner& scanner, const AsfSe
   for (std::size_t i = 0; i < sections.bones.size(); ++i) {
     const auto& bone = sections.bones[i];
     if (!nodes.emplace(lower_case(bone.token), static_cast<int>(i) + 1).second)
-      scanner.fail(bone.token, "a second bone is named " + in_quotes(bone.name));
+      scanner.fail(bone.token, "a second bone is named " + in_quotes(bone.name),
+                   "give it another name");
   }
   return nodes;
 }
@@ -33,7 +34,8 @@ Tree resolve_tree(const TextScanner& scanner, const AsfSections& sections) {
   const auto node_of = [&](std::string_view name) {
     const auto found = nodes.find(lower_case(name));
     if (found == nodes.end())
-      scanner.fail(name, "bone " + in_quotes(name) + " is not defined in :bonedata");
+      scanner.fail(name, "bone " + in_quotes(name) + " is not defined in :bonedata",
+                   "define it there, or leave it out");
     return found->second;
   };
   Tree tree{std::vector<int>(nodes.size(), -1), std::vector<std::vector<int>>(nodes.size())};
@@ -41,9 +43,10 @@ Tree resolve_tree(const TextScanner& scanner, const AsfSections& sections) {
     const int parent = node_of(family.parent);
     for (const auto name : family.children) {
       const int child = node_of(name);
-      if (child == kRoot) scanner.fail(name, "the root cannot be a child");
+      if (child == kRoot) scanner.fail(name, "the root cannot be a child", "leave it out");
       auto& known_parent = tree.parents[static_cast<std::size_t>(child)];
-      if (known_parent >= 0) scanner.fail(name, "bone " + in_quotes(name) + " has two parents");
+      if (known_parent >= 0)
+        scanner.fail(name, "bone " + in_quotes(name) + " has two parents", "name it once");
       known_parent = parent;
       tree.children[static_cast<std::size_t>(parent)].push_back(child);
     }
@@ -69,7 +72,8 @@ std::vector<int> depth_first_order(const TextScanner& scanner, const AsfSections
     const auto& children = tree.children[static_cast<std::size_t>(node)];
     if (depth >= max_depth && !children.empty())
       scanner.fail(sections.bones[static_cast<std::size_t>(children[0]) - 1].token,
-                   "bones are nested deeper than " + std::to_string(max_depth));
+                   "bones are nested deeper than " + std::to_string(max_depth),
+                   "raise the limit max_depth if it is meant so");
     for (auto child = children.rbegin(); child != children.rend(); ++child)
       pending.push_back({*child, depth + 1});
   }
@@ -79,7 +83,8 @@ std::vector<int> depth_first_order(const TextScanner& scanner, const AsfSections
     scanner.fail(
         bone.token,
         "bone " + in_quotes(bone.name) + " cannot be reached from the root: :hierarchy " +
-            (tree.parents[i + 1] < 0 ? "does not mention it as a child" : "has a cycle above it"));
+            (tree.parents[i + 1] < 0 ? "does not mention it as a child" : "has a cycle above it"),
+        "name each bone once as a child");
   }
   return order;
 }
@@ -145,13 +150,22 @@ void build_skeleton(const TextScanner& scanner, const AsfSections& sections,
 
 AcclaimSkeleton read_asf(const std::filesystem::path& path, const ReadOptions& options) {
   options.validate();
-  TextScanner scanner(path, read_file(path, options.max_bytes), kAcclaimSyntax);
+  return asf_from_text(read_file(path, options.max_bytes), path, options);
+}
+
+AcclaimSkeleton asf_from_text(std::string text, const std::filesystem::path& path,
+                              const ReadOptions& options) {
+  options.validate();
+  TextScanner scanner(path, std::move(text), kAcclaimSyntax);
   AcclaimSkeleton result;
   result.path = path;
   const auto sections = read_asf_sections(scanner, options, result.warnings);
   result.metres_per_unit = kInch_m / sections.length_unit;
   result.radians_per_angle = sections.is_in_degrees ? kRadiansPerDegree : 1.0;
   result.root_position = sections.root.position * result.metres_per_unit;
+  if (result.root_position.cwiseAbs().maxCoeff() > kMaxLength_m)
+    scanner.fail(sections.root.position_key, "the position of the root is too large to be a place",
+                 "check the number and the unit of the file");
   build_skeleton(scanner, sections, options, result);
   warn_about_size(rest_pose(result.skeleton), result.metres_per_unit, {path}, result.warnings);
   return result;

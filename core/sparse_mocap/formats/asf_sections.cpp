@@ -8,6 +8,11 @@
 namespace sparse_mocap {
 namespace {
 
+// What to do about what is wrong.
+constexpr const char* kExportAgain = "the file may be cut off; export it again";
+constexpr const char* kRemoveOne = "remove one of them";
+constexpr const char* kRename = "give it another name";
+
 constexpr double kUnitTolerance = 1e-3;  // directions have six digits in the files of the world
 
 struct ChannelName {
@@ -53,7 +58,8 @@ class SectionReader {
   void read_bone(std::string_view begin);
   void read_bone_item(std::string_view key, AsfBone& bone);
   void check_bone(AsfBone& bone, std::string_view begin);
-  void read_limits(std::string_view key, const AsfBone& bone);
+  void read_limits(std::string_view key, AsfBone& bone);
+  void check_limits(const AsfBone& bone);
   void read_hierarchy();
   std::vector<AcclaimChannel> read_channels(bool is_root);
   std::array<Axis, 3> read_axis_order();
@@ -61,7 +67,7 @@ class SectionReader {
   void expect_word(std::string_view word);
   void skip_unknown(std::string_view key, std::string_view section);
   void warn(std::string_view token, const std::string& text) {
-    warnings_.push_back({scanner_.location(token), text});
+    add_warning(warnings_, scanner_.location(token), text);
   }
 
   TextScanner& scanner_;
@@ -75,24 +81,25 @@ class SectionReader {
 };
 
 AsfSections SectionReader::read() {
-  if (scanner_.at_end()) scanner_.fail(scanner_.here(), "the file is empty");
+  if (scanner_.at_end()) scanner_.fail(scanner_.here(), "the file is empty", "export it again");
   while (!scanner_.at_end()) {
     const auto keyword = scanner_.next();
     if (keyword[0] != ':' || !scanner_.starts_line(keyword))
-      scanner_.fail(keyword, "expected a section such as :units, got " + in_quotes(keyword));
+      scanner_.fail(keyword, "expected a section such as :units, got " + in_quotes(keyword),
+                    "choose an .asf file");
     read_section(keyword);
   }
   const auto end = scanner_.here();
-  if (!has_root_) scanner_.fail(end, "there is no :root section");
-  if (!has_bones_) scanner_.fail(end, "there is no :bonedata section");
-  if (!has_hierarchy_) scanner_.fail(end, "there is no :hierarchy section");
+  if (!has_root_) scanner_.fail(end, "there is no :root section", kExportAgain);
+  if (!has_bones_) scanner_.fail(end, "there is no :bonedata section", kExportAgain);
+  if (!has_hierarchy_) scanner_.fail(end, "there is no :hierarchy section", kExportAgain);
   if (!has_units_) warn(end, "there is no :units section; inches and degrees are assumed");
   return std::move(sections_);
 }
 
 void SectionReader::read_section(std::string_view keyword) {
   const auto begin_once = [&](bool& has_it) {
-    if (has_it) scanner_.fail(keyword, "a second section " + in_quotes(keyword));
+    if (has_it) scanner_.fail(keyword, "a second section " + in_quotes(keyword), kRemoveOne);
     has_it = true;
   };
   if (is_word(keyword, ":units")) {
@@ -135,12 +142,13 @@ void SectionReader::read_units() {
     if (is_word(key, "length")) {
       sections_.length_unit = scanner_.number("a number after length");
       if (!(sections_.length_unit > 1e-6 && sections_.length_unit < 1e6))
-        scanner_.fail(key, "the unit of length must be positive");
+        scanner_.fail(key, "the unit of length must be positive", "0.45 is usual, 1 means inches");
     } else if (is_word(key, "angle")) {
       const auto unit = scanner_.next_on_line();
       const bool is_radian = is_word(unit, "rad") || is_word(unit, "radians");
       if (!is_radian && !is_word(unit, "deg") && !is_word(unit, "degrees"))
-        scanner_.fail(unit, "expected deg or rad after angle, got " + in_quotes(unit));
+        scanner_.fail(unit, "expected deg or rad after angle, got " + in_quotes(unit),
+                      "write angle deg or angle rad");
       sections_.is_in_degrees = !is_radian;
     } else if (is_word(key, "mass")) {
       scanner_.number("a number after mass");
@@ -160,6 +168,7 @@ void SectionReader::read_root() {
       root.axis_order = read_axis_order();
     } else if (is_word(key, "position")) {
       root.position = read_vector("3 numbers after position");
+      root.position_key = key;
     } else if (is_word(key, "orientation")) {
       root.orientation_angles = read_vector("3 numbers after orientation");
     } else {
@@ -184,7 +193,8 @@ std::array<Axis, 3> SectionReader::read_axis_order() {
   auto sorted = letters;
   std::ranges::sort(sorted);
   if (sorted != "xyz")
-    scanner_.fail(token, "expected an order of rotations such as XYZ, got " + in_quotes(token));
+    scanner_.fail(token, "expected an order of rotations such as XYZ, got " + in_quotes(token),
+                  "name each of X, Y and Z once");
   std::array<Axis, 3> order{};
   for (std::size_t i = 0; i < 3; ++i) order[i] = static_cast<Axis>(letters[i] - 'x');
   return order;
@@ -199,7 +209,7 @@ std::vector<AcclaimChannel> SectionReader::read_channels(bool is_root) {
     if (known == kChannelNames.end() || (is_root && known->channel == AcclaimChannel::length))
       scanner_.fail(token, "unknown channel " + in_quotes(token), "known are rx ry rz tx ty tz l");
     if (std::ranges::count(channels, known->channel) > 0)
-      scanner_.fail(token, "channel " + in_quotes(token) + " is listed twice");
+      scanner_.fail(token, "channel " + in_quotes(token) + " is listed twice", kRemoveOne);
     channels.push_back(known->channel);
   }
   return channels;
@@ -209,7 +219,7 @@ void SectionReader::expect_word(std::string_view word) {
   const auto token = scanner_.next();
   if (is_word(token, word)) return;
   const std::string got = token.empty() ? "but the file ends" : "got " + in_quotes(token);
-  scanner_.fail(token, "expected " + std::string(word) + ", " + got);
+  scanner_.fail(token, "expected " + std::string(word) + ", " + got, "each begin has an end");
 }
 
 void SectionReader::read_bones() {
@@ -217,7 +227,8 @@ void SectionReader::read_bones() {
     const auto begin = scanner_.peek();
     expect_word("begin");
     if (static_cast<int>(sections_.bones.size()) + 1 >= options_.max_joints)
-      scanner_.fail(begin, "there are more than " + std::to_string(options_.max_joints) + " bones");
+      scanner_.fail(begin, "there are more than " + std::to_string(options_.max_joints) + " bones",
+                    "raise the limit max_joints if it is meant so");
     read_bone(begin);
   }
 }
@@ -229,13 +240,16 @@ void SectionReader::read_bone(std::string_view begin) {
     const auto key = scanner_.next();
     if (is_word(key, "end")) {
       check_bone(bone, begin);
+      check_limits(bone);
       sections_.bones.push_back(std::move(bone));
       return;
     }
     read_bone_item(key, bone);
   }
-  scanner_.fail(scanner_.here(), "the bone that begins in line " +
-                                     std::to_string(scanner_.location(begin).line) + " has no end");
+  scanner_.fail(scanner_.here(),
+                "the bone that begins in line " + std::to_string(scanner_.location(begin).line) +
+                    " has no end",
+                "the file may be cut off, or a line end is missing");
 }
 
 void SectionReader::read_bone_item(std::string_view key, AsfBone& bone) {
@@ -247,7 +261,8 @@ void SectionReader::read_bone_item(std::string_view key, AsfBone& bone) {
   } else if (is_word(key, "length")) {
     const auto token = scanner_.peek();
     bone.length = scanner_.number("a number after length");
-    if (bone.length < 0) scanner_.fail(token, "the length of a bone is negative");
+    if (bone.length < 0)
+      scanner_.fail(token, "the length of a bone is negative", "turn its direction round");
   } else if (is_word(key, "axis")) {
     bone.axis_angles = read_vector("3 numbers after axis");
     bone.axis_order = read_axis_order();
@@ -263,12 +278,14 @@ void SectionReader::read_bone_item(std::string_view key, AsfBone& bone) {
 }
 
 void SectionReader::check_bone(AsfBone& bone, std::string_view begin) {
-  if (bone.name.empty()) scanner_.fail(begin, "a bone has no name");
-  if (is_word(bone.name, "root")) scanner_.fail(bone.token, "a bone cannot be called root");
+  if (bone.name.empty()) scanner_.fail(begin, "a bone has no name", "add a line with its name");
+  if (is_word(bone.name, "root"))
+    scanner_.fail(bone.token, "a bone cannot be called root", kRename);
   const double norm = bone.direction.stableNorm();
   if (norm == 0.0) {
     if (bone.length > 0.0)
-      scanner_.fail(bone.token, "the direction of bone " + in_quotes(bone.name) + " is zero");
+      scanner_.fail(bone.token, "the direction of bone " + in_quotes(bone.name) + " is zero",
+                    "give it a direction, or the length 0");
     return;
   }
   if (std::abs(norm - 1.0) <= kUnitTolerance) return;
@@ -278,15 +295,19 @@ void SectionReader::check_bone(AsfBone& bone, std::string_view begin) {
 }
 
 // Pairs of numbers, one a channel, on as many lines as it takes.
-void SectionReader::read_limits(std::string_view key, const AsfBone& bone) {
-  std::size_t count = 0;
+void SectionReader::read_limits(std::string_view key, AsfBone& bone) {
+  bone.limits = key;
+  bone.num_limits = 0;
   while (is_limit(scanner_.peek())) {
     scanner_.next();
-    ++count;
+    ++bone.num_limits;
   }
-  if (count != 2 * bone.channels.size())
-    warn(key, "bone " + in_quotes(bone.name) + " has " + std::to_string(count) + " limits for " +
-                  std::to_string(bone.channels.size()) + " channels");
+}
+
+void SectionReader::check_limits(const AsfBone& bone) {
+  if (bone.limits.empty() || bone.num_limits == 2 * bone.channels.size()) return;
+  warn(bone.limits, "bone " + in_quotes(bone.name) + " has " + std::to_string(bone.num_limits) +
+                        " limits for " + std::to_string(bone.channels.size()) + " channels");
 }
 
 void SectionReader::read_hierarchy() {
@@ -298,7 +319,7 @@ void SectionReader::read_hierarchy() {
     while (!scanner_.at_line_end()) family.children.push_back(scanner_.next());
     sections_.families.push_back(std::move(family));
   }
-  scanner_.fail(scanner_.here(), "the :hierarchy section has no end");
+  scanner_.fail(scanner_.here(), "the :hierarchy section has no end", kExportAgain);
 }
 
 }  // namespace

@@ -22,11 +22,14 @@ struct AsfBone {
   Vec3 axis_angles = Vec3::Zero();                            // about x, y and z
   std::array<Axis, 3> axis_order{Axis::x, Axis::y, Axis::z};  // the first turns first
   std::vector<AcclaimChannel> channels;
+  std::string_view limits;  // the keyword; empty where there is none
+  std::size_t num_limits = 0;
 };
 
 struct AsfRoot {
   std::vector<AcclaimChannel> channels;
   Vec3 position = Vec3::Zero();
+  std::string_view position_key;  // where it is given; empty where it is not
   Vec3 orientation_angles = Vec3::Zero();
   std::array<Axis, 3> axis_order{Axis::x, Axis::y, Axis::z};
 };

@@ -11,6 +11,12 @@ namespace {
 
 constexpr int kMaxChannels = 6;
 
+// What to do about what is wrong.
+constexpr const char* kExportAgain = "the file may be cut off; export it again";
+constexpr const char* kCheckBraces = "check the braces before it";
+constexpr const char* kRemoveOne = "remove one of them";
+constexpr const char* kCountChannels = "count the names of the channels";
+
 struct ChannelName {
   std::string_view name;
   BvhChannel channel;
@@ -63,8 +69,8 @@ class HierarchyReader {
   void expect_opening_brace(std::string_view after);
   void read_channels(std::string_view keyword);
   int read_channel_count();
-  void warn(FileLocation location, const std::string& text) {
-    warnings_.push_back({std::move(location), text});
+  void warn(const FileLocation& location, const std::string& text) {
+    add_warning(warnings_, location, text);
   }
   [[noreturn]] void fail_truncated(std::string_view token);
 
@@ -79,9 +85,10 @@ class HierarchyReader {
 
 BvhHierarchy HierarchyReader::read() {
   const auto first = scanner_.next();
-  if (first.empty()) scanner_.fail(first, "the file is empty");
+  if (first.empty()) scanner_.fail(first, "the file is empty", kExportAgain);
   if (!is_word(first, "HIERARCHY"))
-    scanner_.fail(first, "not a BVH file: expected HIERARCHY, got " + in_quotes(first));
+    scanner_.fail(first, "not a BVH file: expected HIERARCHY, got " + in_quotes(first),
+                  "choose a .bvh file");
   while (!is_complete_) {
     const auto token = scanner_.next();
     if (token.empty()) fail_truncated(token);
@@ -99,12 +106,14 @@ BvhHierarchy HierarchyReader::read() {
 }
 
 void HierarchyReader::fail_truncated(std::string_view token) {
-  if (joints_.empty()) scanner_.fail(token, "there is no ROOT");
-  if (blocks_.empty()) scanner_.fail(token, "there is no MOTION section");
+  if (joints_.empty()) scanner_.fail(token, "there is no ROOT", kExportAgain);
+  if (blocks_.empty()) scanner_.fail(token, "there is no MOTION section", kExportAgain);
   const auto& open = joint(blocks_.back().joint);
-  scanner_.fail(token, "the file ends inside joint " + in_quotes(open.name) + " of line " +
-                           std::to_string(open.location.line) + ": " +
-                           std::to_string(blocks_.size()) + " '}' are missing");
+  scanner_.fail(token,
+                "the file ends inside joint " + in_quotes(open.name) + " of line " +
+                    std::to_string(open.location.line) + ": " + std::to_string(blocks_.size()) +
+                    " '}' are missing",
+                kExportAgain);
 }
 
 void HierarchyReader::read_outside_block(std::string_view token) {
@@ -113,18 +122,20 @@ void HierarchyReader::read_outside_block(std::string_view token) {
       warn(scanner_.location(token), "a further ROOT; only the first one is read");
     open_joint(token);
   } else if (is_word(token, "MOTION")) {
-    if (joints_.empty()) scanner_.fail(token, "there is no ROOT before MOTION");
+    if (joints_.empty())
+      scanner_.fail(token, "there is no ROOT before MOTION", "put the joints before it");
     is_complete_ = true;
   } else {
     scanner_.fail(token, "expected ROOT or MOTION, got " + in_quotes(token),
-                  token == "}" ? "there is one '}' too many" : "");
+                  token == "}" ? "there is one '}' too many" : kCheckBraces);
   }
 }
 
 void HierarchyReader::read_joint_item(std::string_view token) {
   auto& current = joint(blocks_.back().joint);
   if (is_word(token, "OFFSET")) {
-    if (current.offset) scanner_.fail(token, "a second OFFSET of joint " + in_quotes(current.name));
+    if (current.offset)
+      scanner_.fail(token, "a second OFFSET of joint " + in_quotes(current.name), kRemoveOne);
     current.offset = lengths_m(scanner_, "3 numbers after OFFSET", options_.bvh_unit_m);
   } else if (is_word(token, "CHANNELS")) {
     read_channels(token);
@@ -133,30 +144,34 @@ void HierarchyReader::read_joint_item(std::string_view token) {
   } else if (is_word(token, "End")) {
     open_end_site();
   } else {
-    scanner_.fail(token, "expected OFFSET, CHANNELS, JOINT, End Site or '}' in joint " +
-                             in_quotes(current.name) + ", got " + in_quotes(token));
+    scanner_.fail(token,
+                  "expected OFFSET, CHANNELS, JOINT, End Site or '}' in joint " +
+                      in_quotes(current.name) + ", got " + in_quotes(token),
+                  kCheckBraces);
   }
 }
 
 void HierarchyReader::read_end_site_item(std::string_view token) {
   auto& block = blocks_.back();
   if (is_word(token, "OFFSET")) {
-    if (block.has_offset) scanner_.fail(token, "a second OFFSET of an End Site");
+    if (block.has_offset) scanner_.fail(token, "a second OFFSET of an End Site", kRemoveOne);
     block.has_offset = true;
     const Vec3 offset = lengths_m(scanner_, "3 numbers after OFFSET", options_.bvh_unit_m);
     auto& end_site = joint(block.joint).end_site;
     if (!end_site) end_site = offset;
   } else if (is_word(token, "CHANNELS")) {
-    if (read_channel_count() != 0) scanner_.fail(token, "an End Site cannot have channels");
+    if (read_channel_count() != 0)
+      scanner_.fail(token, "an End Site cannot have channels", "remove the line");
   } else {
-    scanner_.fail(token, "expected OFFSET or '}' in an End Site, got " + in_quotes(token));
+    scanner_.fail(token, "expected OFFSET or '}' in an End Site, got " + in_quotes(token),
+                  kCheckBraces);
   }
 }
 
 void HierarchyReader::open_joint(std::string_view keyword) {
   if (static_cast<int>(joints_.size()) >= options_.max_joints)
-    scanner_.fail(keyword,
-                  "there are more than " + std::to_string(options_.max_joints) + " joints");
+    scanner_.fail(keyword, "there are more than " + std::to_string(options_.max_joints) + " joints",
+                  "raise the limit max_joints if it is meant so");
   BvhJoint opened;
   opened.name = read_name(keyword);
   opened.location = scanner_.location(keyword);
@@ -181,7 +196,8 @@ void HierarchyReader::open_end_site() {
 
 void HierarchyReader::push_block(std::string_view keyword, OpenBlock block) {
   if (static_cast<int>(blocks_.size()) >= options_.max_depth + (block.is_end_site ? 1 : 0))
-    scanner_.fail(keyword, "joints are nested deeper than " + std::to_string(options_.max_depth));
+    scanner_.fail(keyword, "joints are nested deeper than " + std::to_string(options_.max_depth),
+                  "raise the limit max_depth if it is meant so");
   blocks_.push_back(block);
 }
 
@@ -195,7 +211,9 @@ void HierarchyReader::close_block(std::string_view token) {
     if (!closed.end_site) closed.end_site = Vec3::Zero();
     return;
   }
-  if (!closed.offset) scanner_.fail(token, "joint " + in_quotes(closed.name) + " has no OFFSET");
+  if (!closed.offset)
+    scanner_.fail(token, "joint " + in_quotes(closed.name) + " has no OFFSET",
+                  "add a line OFFSET x y z");
   if (!closed.channels) {
     warn(closed.location, "joint " + in_quotes(closed.name) + " has no CHANNELS; it does not move");
     closed.channels.emplace();
@@ -206,13 +224,14 @@ void HierarchyReader::close_block(std::string_view token) {
 // Everything on the line before the brace; several words become one.
 std::string HierarchyReader::read_name(std::string_view keyword) {
   if (scanner_.at_line_end() || scanner_.peek() == "{")
-    scanner_.fail(scanner_.peek(), "the name after " + std::string(keyword) + " is missing");
+    scanner_.fail(scanner_.peek(), "the name after " + std::string(keyword) + " is missing",
+                  "write it on the same line");
   const auto first_word = scanner_.peek();
   std::string name;
   int num_words = 0;
   while (!scanner_.at_line_end() && scanner_.peek() != "{") {
     const auto word = scanner_.next();
-    if (word == "}") scanner_.fail(word, "expected a name and '{', got '}'");
+    if (word == "}") scanner_.fail(word, "expected a name and '{', got '}'", kCheckBraces);
     if (num_words++ > 0) name += '_';
     name += word;
   }
@@ -226,23 +245,25 @@ void HierarchyReader::expect_opening_brace(std::string_view after) {
   const auto token = scanner_.next();
   if (token == "{") return;
   const std::string got = token.empty() ? "but the file ends" : "got " + in_quotes(token);
-  scanner_.fail(token, "expected '{' after " + std::string(after) + ", " + got);
+  scanner_.fail(token, "expected '{' after " + std::string(after) + ", " + got, kCheckBraces);
 }
 
 int HierarchyReader::read_channel_count() {
   const auto token = scanner_.peek();
   const double count = scanner_.number("the number of channels after CHANNELS");
   if (count < 0 || count > kMaxChannels || count != std::floor(count))
-    scanner_.fail(token, "CHANNELS says " + std::string(token) +
-                             ", it must be a whole number from 0 to " +
-                             std::to_string(kMaxChannels));
+    scanner_.fail(token,
+                  "CHANNELS says " + std::string(token) + ", it must be a whole number from 0 to " +
+                      std::to_string(kMaxChannels),
+                  kCountChannels);
   return static_cast<int>(count);
 }
 
 void HierarchyReader::read_channels(std::string_view keyword) {
   const int owner = blocks_.back().joint;
   if (joint(owner).channels)
-    scanner_.fail(keyword, "a second CHANNELS of joint " + in_quotes(joint(owner).name));
+    scanner_.fail(keyword, "a second CHANNELS of joint " + in_quotes(joint(owner).name),
+                  kRemoveOne);
   const int declared = read_channel_count();
   std::vector<BvhChannel> channels;
   std::string_view token = scanner_.peek();
@@ -253,19 +274,23 @@ void HierarchyReader::read_channels(std::string_view keyword) {
   while (find_channel(token) != nullptr ||
          (static_cast<int>(channels.size()) < declared && !is_next_item())) {
     const auto* channel = find_channel(token);
-    if (channel == nullptr) scanner_.fail(token, "unknown channel " + in_quotes(token));
+    if (channel == nullptr)
+      scanner_.fail(token, "unknown channel " + in_quotes(token),
+                    "known are Xposition to Zposition and Xrotation to Zrotation");
     const auto is_same = [&](const BvhChannel& other) {
       return other.is_rotation == channel->is_rotation && other.axis == channel->axis;
     };
     if (std::ranges::any_of(channels, is_same))
-      scanner_.fail(token, "channel " + in_quotes(token) + " is listed twice");
+      scanner_.fail(token, "channel " + in_quotes(token) + " is listed twice", kRemoveOne);
     channels.push_back(*channel);
     scanner_.next();
     token = scanner_.peek();
   }
   if (static_cast<int>(channels.size()) != declared)
-    scanner_.fail(keyword, "CHANNELS says " + std::to_string(declared) + ", but " +
-                               std::to_string(channels.size()) + " channel names follow");
+    scanner_.fail(keyword,
+                  "CHANNELS says " + std::to_string(declared) + ", but " +
+                      std::to_string(channels.size()) + " channel names follow",
+                  kCountChannels);
   joint(owner).channels = std::move(channels);
 }
 

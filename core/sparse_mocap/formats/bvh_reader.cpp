@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kShortestFrame_s = 1e-4;
 constexpr double kLongestFrame_s = 1.0;
+constexpr const char* kRaiseFrames = "raise the limit max_frames if it is meant so";
+constexpr const char* kCompareChannels = "compare the row with the joints' CHANNELS";
 // A joint whose position channels stay this close to its OFFSET does not move.
 constexpr double kSameOffset_m = 1e-7;
 
@@ -58,8 +60,9 @@ void warn_about_renamed(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
     const auto& source = hierarchy.joints[static_cast<std::size_t>(j)];
     const auto& name = skeleton.joint(j).name;
     if (name == source.name) continue;
-    warnings.push_back({source.location, "a second joint named " + in_quotes(source.name) +
-                                             "; it is called " + in_quotes(name)});
+    add_warning(
+        warnings, source.location,
+        "a second joint named " + in_quotes(source.name) + "; it is called " + in_quotes(name));
   }
 }
 
@@ -87,7 +90,8 @@ class MotionReader {
     header_ = read_header();
     motion_.frame_time_s = header_.frame_time_s;
     if (row_.empty() && !options_.allow_no_frames)
-      throw FormatError(header_.location, "no joint has a channel, so there is no motion");
+      throw FormatError(header_.location, "no joint has a channel, so there is no motion",
+                        "export the joints with their channels");
     reserve();
     while (!row_.empty() && !scanner_.at_end()) {
       read_row();
@@ -126,7 +130,8 @@ double MotionReader::read_field(std::string_view first_word, std::string_view se
     const auto token = scanner_.next_until(":");
     if (equal_ignoring_case(token, word)) continue;
     const std::string got = token.empty() ? ", but the file ends" : ", got " + in_quotes(token);
-    scanner_.fail(token, "expected " + std::string(what) + got);
+    scanner_.fail(token, "expected " + std::string(what) + got,
+                  "MOTION is followed by 'Frames: 12' and 'Frame Time: 0.01'");
   }
   scanner_.skip_character(':');
   return scanner_.number(what);
@@ -139,17 +144,20 @@ Header MotionReader::read_header() {
   header.location = scanner_.location(frames_token);
   const double frames = read_field("Frames", "", "'Frames:' and a number");
   if (frames < 0 || frames != std::floor(frames))
-    throw FormatError(header.location, "the number of frames must be a whole number from 0 on");
+    throw FormatError(header.location, "the number of frames must be a whole number from 0 on",
+                      "count the rows below");
   const int most = max_frames_of(static_cast<int>(columns_.size()), options_);
   if (frames > most)
     throw FormatError(header.location,
-                      "the file declares more frames than the limit of " + std::to_string(most));
+                      "the file declares more frames than the limit of " + std::to_string(most),
+                      kRaiseFrames);
   header.declared_frames = static_cast<int>(frames);
   scanner_.at_end();
   const auto time_token = scanner_.peek();
   header.frame_time_s = read_field("Frame", "Time", "'Frame Time:' and a number");
   if (header.frame_time_s < kShortestFrame_s || header.frame_time_s > kLongestFrame_s)
-    scanner_.fail(time_token, "the frame time must be from 0.0001 to 1 s");
+    scanner_.fail(time_token, "the frame time must be from 0.0001 to 1 s",
+                  "write the seconds from a frame to the next");
   return header;
 }
 
@@ -168,7 +176,8 @@ void MotionReader::read_row() {
   const auto expected = [&] { return ", expected " + std::to_string(row_.size()); };
   if (count == row_.size()) {
     if (scanner_.at_line_end()) return;
-    scanner_.fail(scanner_.peek(), "the " + row_name() + " has more values" + expected());
+    scanner_.fail(scanner_.peek(), "the " + row_name() + " has more values" + expected(),
+                  kCompareChannels);
   }
   while (count < row_.size()) {
     const auto line_end = scanner_.here();
@@ -176,14 +185,15 @@ void MotionReader::read_row() {
         "the " + row_name() + " has " + std::to_string(count) + " values" + expected();
     if (scanner_.at_end()) scanner_.fail(line_end, problem, "the file may be cut off");
     count += scanner_.numbers_on_line(row_.data() + count, row_.size() - count);
-    if (!scanner_.at_line_end()) scanner_.fail(line_end, problem);
+    if (!scanner_.at_line_end()) scanner_.fail(line_end, problem, kCompareChannels);
   }
 }
 
 void MotionReader::append_frame() {
   if (motion_.num_frames() >= max_frames_of(static_cast<int>(columns_.size()), options_))
-    scanner_.fail(scanner_.here(), "there are more frames than the limit of " +
-                                       std::to_string(motion_.num_frames()));
+    scanner_.fail(scanner_.here(),
+                  "there are more frames than the limit of " + std::to_string(motion_.num_frames()),
+                  kRaiseFrames);
   for (std::size_t j = 0; j < columns_.size(); ++j) {
     Quat rotation = Quat::Identity();
     for (const auto& [index, axis] : columns_[j].rotations)
@@ -200,9 +210,10 @@ Vec3 MotionReader::position(std::size_t joint) const {
   for (const auto& [index, axis] : columns_[joint].positions)
     result[static_cast<Eigen::Index>(axis)] = row_[index] * options_.bvh_unit_m;
   if (result.cwiseAbs().maxCoeff() > kMaxLength_m)
-    scanner_.fail(scanner_.here(), "a position in the row of frame " +
-                                       std::to_string(motion_.num_frames() + 1) +
-                                       " is too large to be a place");
+    scanner_.fail(scanner_.here(),
+                  "a position in the row of frame " + std::to_string(motion_.num_frames() + 1) +
+                      " is too large to be a place",
+                  "check the number and the unit of the file");
   return result;
 }
 
@@ -222,12 +233,12 @@ void MotionReader::append_offset(std::size_t joint, const Vec3& offset) {
 void MotionReader::check_frame_count() {
   const int rows = motion_.num_frames();
   if (rows == 0 && !options_.allow_no_frames)
-    throw FormatError(header_.location, "there is no frame, so there is no motion");
+    throw FormatError(header_.location, "there is no frame, so there is no motion",
+                      "export the frames, or ask for the skeleton alone");
   if (rows != header_.declared_frames)
-    warnings_.push_back({header_.location, "the file declares " +
-                                               std::to_string(header_.declared_frames) +
-                                               " frames and has " + std::to_string(rows) +
-                                               "; those that it has are read"});
+    add_warning(warnings_, header_.location,
+                "the file declares " + std::to_string(header_.declared_frames) +
+                    " frames and has " + std::to_string(rows) + "; those that it has are read");
 }
 
 // The rotation that brings an axis up (to y).
@@ -256,7 +267,13 @@ void change_basis(Motion& motion, const Quat& C) {
 
 MotionFile read_bvh(const std::filesystem::path& path, const ReadOptions& options) {
   options.validate();
-  TextScanner scanner(path, read_file(path, options.max_bytes), {.punctuation = "{}"});
+  return bvh_from_text(read_file(path, options.max_bytes), path, options);
+}
+
+MotionFile bvh_from_text(std::string text, const std::filesystem::path& path,
+                         const ReadOptions& options) {
+  options.validate();
+  TextScanner scanner(path, std::move(text), {.punctuation = "{}"});
   MotionFile file;
   const auto hierarchy = read_bvh_hierarchy(scanner, options, file.warnings);
   file.motion.skeleton = skeleton_of(hierarchy);

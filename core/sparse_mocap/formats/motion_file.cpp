@@ -8,6 +8,7 @@
 #include "sparse_mocap/base/text_scanner.hpp"
 #include "sparse_mocap/formats/acclaim.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
+#include "sparse_mocap/formats/reader_support.hpp"
 
 namespace sparse_mocap {
 namespace {
@@ -23,14 +24,19 @@ MotionFile read_amc_with_asf(const std::filesystem::path& path, const ReadOption
   auto warnings = std::move(skeleton.warnings);
   const auto amc_name = lower_case(path.stem().string());
   if (!amc_name.starts_with(lower_case(asf_path.stem().string())))
-    warnings.push_back(
-        {{path}, "read with " + asf_path.filename().string() + ", the only .asf in the folder"});
+    add_warning(warnings, {path},
+                "read with " + asf_path.filename().string() + ", the only .asf in the folder");
   warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
   file.warnings = std::move(warnings);
   return file;
 }
 
 }  // namespace
+
+std::string ReadWarning::message() const {
+  const std::string line = FormatError(location, text).what();
+  return count == 1 ? line : line + " (and " + std::to_string(count - 1) + " more of this kind)";
+}
 
 void ReadOptions::validate() const {
   const auto require = [](bool is_fine, const std::string& name, double value, const char* range) {

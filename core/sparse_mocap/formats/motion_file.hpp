@@ -27,10 +27,14 @@ struct ReadOptions {
   void validate() const;
 };
 
-// Something a reader accepted although it looks odd.
+// Something a reader accepted although it looks odd: the first of its kind in the file.
 struct ReadWarning {
   FileLocation location;
   std::string text;
+  int count = 1;  // how many of its kind the file holds
+
+  // One line: "walk.bvh:5:3: a name with spaces; read as "Left_Arm" (and 3 more of this kind)".
+  std::string message() const;
 };
 
 struct MotionFile {

@@ -31,22 +31,6 @@ std::size_t utf8_length(std::string_view text) {
   return is_overlong || is_surrogate || is_beyond_unicode ? 0 : length;
 }
 
-std::string escaped_to_utf8(std::string_view text) {
-  std::string result;
-  while (!text.empty()) {
-    const auto length = utf8_length(text);
-    if (length > 0) {
-      result += text.substr(0, length);
-    } else {
-      std::array<char, 8> escape{};
-      std::snprintf(escape.data(), escape.size(), "\\x%02x", static_cast<unsigned char>(text[0]));
-      result += escape.data();
-    }
-    text.remove_prefix(std::max<std::size_t>(length, 1));
-  }
-  return result;
-}
-
 std::string short_number(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g", value);
@@ -59,6 +43,17 @@ double size_m(const JointTransforms& pose) {
   for (const auto& point : pose.pivot) box.extend(point);
   for (const auto& point : pose.end) box.extend(point);
   return box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
+}
+
+// A warning's text without what is quoted and without digits.
+std::string kind_of(std::string_view text) {
+  std::string kind;
+  bool is_quoted = false;
+  for (const char c : text) {
+    if (c == '"') is_quoted = !is_quoted;
+    if (!is_quoted && (c < '0' || c > '9')) kind += c;
+  }
+  return kind;
 }
 
 }  // namespace
@@ -77,6 +72,34 @@ Quat turned_about(const Quat& q, Axis axis, double angle_rad) {
   to[j] = c * from[j] + s * from[k];
   to[k] = c * from[k] - s * from[j];
   return result;
+}
+
+std::string escaped_to_utf8(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const auto length = utf8_length(text);
+    if (length > 0) {
+      result += text.substr(0, length);
+    } else {
+      std::array<char, 8> escape{};
+      std::snprintf(escape.data(), escape.size(), "\\x%02x", static_cast<unsigned char>(text[0]));
+      result += escape.data();
+    }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return result;
+}
+
+void add_warning(std::vector<ReadWarning>& warnings, const FileLocation& location,
+                 const std::string& text) {
+  const auto kind = kind_of(text);
+  const auto known = std::ranges::find_if(
+      warnings, [&](const ReadWarning& warning) { return kind_of(warning.text) == kind; });
+  if (known == warnings.end()) {
+    warnings.push_back({location, text});
+  } else {
+    ++known->count;
+  }
 }
 
 double length_m(TextScanner& scanner, std::string_view what, double unit_m) {
@@ -98,25 +121,31 @@ Vec3 lengths_m(TextScanner& scanner, std::string_view what, double unit_m) {
 std::string checked_name(const TextScanner& scanner, std::string_view token, std::string_view name,
                          std::vector<ReadWarning>& warnings) {
   if (name.size() > kMaxNameBytes)
-    scanner.fail(token, "a name has " + std::to_string(name.size()) + " bytes, at most " +
-                            std::to_string(kMaxNameBytes) + " are accepted");
+    scanner.fail(token,
+                 "a name has " + std::to_string(name.size()) + " bytes, at most " +
+                     std::to_string(kMaxNameBytes) + " are accepted",
+                 "shorten it");
   auto usable = escaped_to_utf8(name);
   if (usable != name)
-    warnings.push_back(
-        {scanner.location(token), "the name is not UTF-8; read as " + in_quotes(usable)});
+    add_warning(warnings, scanner.location(token),
+                "the name is not UTF-8; read as " + in_quotes(usable));
   return usable;
 }
 
-std::vector<std::string> unique_names(std::vector<std::string> names) {
-  const std::set<std::string> originals(names.begin(), names.end());
+std::vector<std::string> unique_names(std::vector<std::string> names, NameCase name_case) {
+  const auto key = [&](const std::string& name) {
+    return name_case == NameCase::ignored ? lower_case(name) : name;
+  };
+  std::set<std::string> originals;
+  for (const auto& name : names) originals.insert(key(name));
   std::set<std::string> taken;
   for (auto& name : names) {
     std::string candidate = name;
-    for (int number = 2;
-         taken.contains(candidate) || (candidate != name && originals.contains(candidate));
+    for (int number = 2; taken.contains(key(candidate)) ||
+                         (candidate != name && originals.contains(key(candidate)));
          ++number)
       candidate = name + "_" + std::to_string(number);
-    taken.insert(candidate);
+    taken.insert(key(candidate));
     name = std::move(candidate);
   }
   return names;
@@ -145,10 +174,10 @@ void warn_about_size(const JointTransforms& pose, double unit_m, const FileLocat
   };
   const auto& best = *std::ranges::min_element(kUnits, {}, misfit);
   if (std::abs(best.metres / unit_m - 1.0) < 0.01) return;
-  warnings.push_back({location, "the figure measures " + short_number(size) +
-                                    " m; with lengths in " + best.name + " (" +
-                                    short_number(best.metres) + " m a unit) it would be " +
-                                    short_number(size_in(best)) + " m"});
+  add_warning(warnings, location,
+              "the figure measures " + short_number(size) + " m; with lengths in " + best.name +
+                  " (" + short_number(best.metres) + " m a unit) it would be " +
+                  short_number(size_in(best)) + " m");
 }
 
 int max_frames_of(int num_joints, const ReadOptions& options) {

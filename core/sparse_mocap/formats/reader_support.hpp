@@ -18,17 +18,28 @@ inline constexpr double kMaxLength_m = 1e5;
 // q followed, in its own frame, by a turn about one axis: q * (axis, angle).
 Quat turned_about(const Quat& q, Axis axis, double angle_rad);
 
+// Records a warning, or counts it with the one of its kind: texts that differ only in what is
+// quoted and in numbers are of one kind.
+void add_warning(std::vector<ReadWarning>& warnings, const FileLocation& location,
+                 const std::string& text);
+
 // The next token as a length of a file whose unit is unit_m, in metres.
 double length_m(TextScanner& scanner, std::string_view what, double unit_m);
 Vec3 lengths_m(TextScanner& scanner, std::string_view what, double unit_m);
+
+// The name with bytes that are not UTF-8 written as \x and two digits.
+std::string escaped_to_utf8(std::string_view name);
 
 // The name that stands at the token, with bytes that are not UTF-8 escaped (recorded as a warning).
 // Throws FormatError when it is longer than 255 bytes.
 std::string checked_name(const TextScanner& scanner, std::string_view token, std::string_view name,
                          std::vector<ReadWarning>& warnings);
 
+enum class NameCase { counts, ignored };
+
 // The names with a suffix (_2, _3, ...) at each repetition; distinct names stay as they are.
-std::vector<std::string> unique_names(std::vector<std::string> names);
+std::vector<std::string> unique_names(std::vector<std::string> names,
+                                      NameCase name_case = NameCase::counts);
 
 // Warns when a figure in this pose is far from human size, and says which unit would make it so.
 void warn_about_size(const JointTransforms& pose, double unit_m, const FileLocation& location,

@@ -130,13 +130,17 @@ TEST(TextScanner, ReadsLineByLine) {
 }
 
 TEST(TextScanner, SaysWhereAndWhatIsWrongWithANumber) {
-  EXPECT_EQ(error_of("1 2\n3 x"), "walk.bvh:2:3: expected a number, got \"x\"");
+  EXPECT_EQ(error_of("1 2\n3 x"),
+            "walk.bvh:2:3: expected a number, got \"x\"; write a decimal number such as -1.5");
   EXPECT_EQ(error_of("1\n2 1,5"),
             "walk.bvh:2:3: expected a number, got \"1,5\"; it has a decimal comma; write numbers "
             "with a point");
-  EXPECT_EQ(error_of("1e400"), "walk.bvh:1:1: \"1e400\" is too large a number");
-  EXPECT_EQ(error_of("nan"), "walk.bvh:1:1: expected a number, got \"nan\"");
-  EXPECT_EQ(error_of("\x01\xFF"), "walk.bvh:1:1: expected a number, got \"\\x01\\xff\"");
+  EXPECT_EQ(error_of("1e400"), "walk.bvh:1:1: \"1e400\" is too large a number; check the number");
+  EXPECT_EQ(error_of("nan"),
+            "walk.bvh:1:1: expected a number, got \"nan\"; write a decimal number such as -1.5");
+  EXPECT_EQ(
+      error_of("\x01\xFF"),
+      "walk.bvh:1:1: expected a number, got \"\\x01\\xff\"; write a decimal number such as -1.5");
   EXPECT_EQ(error_of("1e-400 +1.5"), "no error");
 }
 
@@ -145,8 +149,9 @@ TEST(TextScanner, RefusesWhatIsNotText) {
   EXPECT_EQ(error_of("\xFE\xFF\0H"s), "walk.bvh:1:1: is UTF-16 text; save it as UTF-8");
   EXPECT_EQ(error_of("H\0I\0"s), "walk.bvh:1:1: is UTF-16 text; save it as UTF-8");
   EXPECT_EQ(error_of("\0H\0I"s), "walk.bvh:1:1: is UTF-16 text; save it as UTF-8");
-  EXPECT_EQ(error_of("a\nb\0c"s), "walk.bvh:2: holds a NUL byte, so it is not text");
-  EXPECT_EQ(error_of("\0"s), "walk.bvh:1: holds a NUL byte, so it is not text");
+  EXPECT_EQ(error_of("a\nb\0c"s),
+            "walk.bvh:2: holds a NUL byte, so it is not text; save it as text");
+  EXPECT_EQ(error_of("\0"s), "walk.bvh:1: holds a NUL byte, so it is not text; save it as text");
 }
 
 TEST(InQuotes, ShortensAndEscapes) {

@@ -73,14 +73,17 @@ inline const std::string kAmc =
 
 inline AcclaimSkeleton read_asf_text(const std::string& text, const ReadOptions& options = {}) {
   const TemporaryFolder folder;
-  return read_asf(folder.write("small.asf", text), options);
+  auto asf = read_asf(folder.write("small.asf", text), options);
+  EXPECT_EQ(joined(check_skeleton(asf.skeleton)), "");
+  EXPECT_EQ(asf.channels.size(), asf.skeleton.joints().size());
+  return asf;
 }
 
 inline MotionFile read_acclaim_text(const std::string& asf, const std::string& amc,
                                     const ReadOptions& options = {}) {
   const TemporaryFolder folder;
   folder.write("small.asf", asf);
-  return read_motion_file(folder.write("small_01.amc", amc), options);
+  return sound(read_motion_file(folder.write("small_01.amc", amc), options));
 }
 
 }  // namespace sparse_mocap::testing

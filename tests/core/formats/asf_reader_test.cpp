@@ -135,47 +135,56 @@ TEST(ReadAsf, NormalisesDirections) {
 }
 
 TEST(ReadAsfRefuses, BadBones) {
-  EXPECT_EQ(error_with("direction 0 -1 0", "direction 0 0 0"),
-            "18: :18:10: the direction of bone \"thigh\" is zero");
+  EXPECT_EQ(
+      error_with("direction 0 -1 0", "direction 0 0 0"),
+      "18: :18:10: the direction of bone \"thigh\" is zero; give it a direction, or the length 0");
   EXPECT_EQ(error_with("length 0.5", "length -0.5"),
-            "20: :20:12: the length of a bone is negative");
+            "20: :20:12: the length of a bone is negative; turn its direction round");
   EXPECT_EQ(
       error_with("length 0.5", "length 1e30"),
       "18: :18:10: bone \"thigh\" is too long to be a length; check its length and the unit of "
       "the file");
   EXPECT_EQ(error_with("direction 0 -1 0", "direction 0 -1"),
-            "20: :20:5: expected 3 numbers after direction, got \"length\"");
+            "20: :20:5: expected 3 numbers after direction, got \"length\"; write a decimal number "
+            "such as -1.5");
   EXPECT_EQ(error_with("axis 0 0 0 XYZ", "axis 0 0 0 XXZ"),
-            "21: :21:16: expected an order of rotations such as XYZ, got \"XXZ\"");
+            "21: :21:16: expected an order of rotations such as XYZ, got \"XXZ\"; name each of X, "
+            "Y and Z once");
   EXPECT_EQ(error_with("dof rx ry rz", "dof rx ry rq"),
             "22: :22:15: unknown channel \"rq\"; known are rx ry rz tx ty tz l");
-  EXPECT_EQ(error_with("dof rx ry rz", "dof rx rx"), "22: :22:12: channel \"rx\" is listed twice");
-  EXPECT_EQ(error_with("    name thigh\n", ""), "16: :16:3: a bone has no name");
-  EXPECT_EQ(error_with("name shin", "name THIGH"), "29: :29:10: a second bone is named \"THIGH\"");
-  EXPECT_EQ(error_with("name shin", "name root"), "29: :29:10: a bone cannot be called root");
+  EXPECT_EQ(error_with("dof rx ry rz", "dof rx rx"),
+            "22: :22:12: channel \"rx\" is listed twice; remove one of them");
+  EXPECT_EQ(error_with("    name thigh\n", ""),
+            "16: :16:3: a bone has no name; add a line with its name");
+  EXPECT_EQ(error_with("name shin", "name THIGH"),
+            "29: :29:10: a second bone is named \"THIGH\"; give it another name");
+  EXPECT_EQ(error_with("name shin", "name root"),
+            "29: :29:10: a bone cannot be called root; give it another name");
   EXPECT_EQ(error_with("  end\n:hierarchy", ":hierarchy"),
-            "42: :42:1: the bone that begins in line 36 has no end");
+            "42: :42:1: the bone that begins in line 36 has no end; the file may be cut off, or a "
+            "line end is missing");
 }
 
 TEST(ReadAsfRefuses, BadHierarchies) {
   const std::string from = "    thigh shin fin\n";
-  EXPECT_EQ(error_with(from, "    thigh shin foot fin\n"),
-            "46: :46:16: bone \"foot\" is not defined in :bonedata");
+  EXPECT_EQ(
+      error_with(from, "    thigh shin foot fin\n"),
+      "46: :46:16: bone \"foot\" is not defined in :bonedata; define it there, or leave it out");
   EXPECT_EQ(error_with(from, "    thigh shin fin\n    shin fin\n"),
-            "47: :47:10: bone \"fin\" has two parents");
+            "47: :47:10: bone \"fin\" has two parents; name it once");
   EXPECT_EQ(error_with(from, "    thigh shin fin root\n"),
-            "46: :46:20: the root cannot be a child");
-  EXPECT_EQ(
-      error_with(from, "    thigh shin\n"),
-      "38: :38:10: bone \"fin\" cannot be reached from the root: :hierarchy does not mention it "
-      "as a child");
-  EXPECT_EQ(
-      error_with(from, "    shin fin\n    fin shin\n"),
-      "29: :29:10: bone \"shin\" cannot be reached from the root: :hierarchy has a cycle above "
-      "it");
+            "46: :46:20: the root cannot be a child; leave it out");
+  EXPECT_EQ(error_with(from, "    thigh shin\n"),
+            "38: :38:10: bone \"fin\" cannot be reached from the root: :hierarchy does not mention "
+            "it as a child; name each bone once as a child");
+  EXPECT_EQ(error_with(from, "    shin fin\n    fin shin\n"),
+            "29: :29:10: bone \"shin\" cannot be reached from the root: :hierarchy has a cycle "
+            "above it; name each bone once as a child");
   std::string many = "    thigh shin fin";
   for (int i = 0; i < 100'000; ++i) many += " b" + std::to_string(i);
-  EXPECT_EQ(error_with(from, many + "\n"), "46: :46:20: bone \"b0\" is not defined in :bonedata");
+  EXPECT_EQ(
+      error_with(from, many + "\n"),
+      "46: :46:20: bone \"b0\" is not defined in :bonedata; define it there, or leave it out");
 }
 
 TEST(ReadAsfRefuses, SkeletonsBeyondTheLimits) {
@@ -193,16 +202,24 @@ TEST(ReadAsfRefuses, SkeletonsBeyondTheLimits) {
 }
 
 TEST(ReadAsfRefuses, BadSections) {
-  EXPECT_EQ(error_in(""), "1: :1:1: the file is empty");
-  EXPECT_EQ(error_in("hello"), "1: :1:1: expected a section such as :units, got \"hello\"");
+  EXPECT_EQ(error_in(""), "1: :1:1: the file is empty; export it again");
+  EXPECT_EQ(error_in("hello"),
+            "1: :1:1: expected a section such as :units, got \"hello\"; choose an .asf file");
   EXPECT_EQ(error_with("angle deg", "angle grad"),
-            "7: :7:9: expected deg or rad after angle, got \"grad\"");
+            "7: :7:9: expected deg or rad after angle, got \"grad\"; write angle deg or angle rad");
   EXPECT_EQ(error_with("length 0.0254", "length 0"),
-            "6: :6:3: the unit of length must be positive");
+            "6: :6:3: the unit of length must be positive; 0.45 is usual, 1 means inches");
   EXPECT_EQ(error_in(kAsf.substr(0, kAsf.find(":hierarchy"))),
-            "43: :43:1: there is no :hierarchy section");
-  EXPECT_EQ(error_in(kAsf + ":root\n"), "48: :48:1: a second section \":root\"");
+            "43: :43:1: there is no :hierarchy section; the file may be cut off; export it again");
+  EXPECT_EQ(error_in(kAsf + ":root\n"),
+            "48: :48:1: a second section \":root\"; remove one of them");
   EXPECT_EQ(error_in("\xFF\xFE"), "1: :1:1: is UTF-16 text; save it as UTF-8");
+}
+
+TEST(ReadAsfRefuses, ARootThatIsNowhere) {
+  EXPECT_EQ(error_with("position 0 0 0", "position 0 1e30 0"),
+            "13: :13:3: the position of the root is too large to be a place; check the number and "
+            "the unit of the file");
 }
 
 TEST(ReadAsfRefuses, EveryTruncation) {

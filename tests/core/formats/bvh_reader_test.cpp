@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What BVH files say is read as they mean it. Expected rotations are the textbook matrices of the
-// six Tait-Bryan orders, written out, so that nothing here multiplies rotations as the reader does.
+// What BVH files say is read as they mean it.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -9,17 +8,21 @@
 #include <vector>
 
 #include "formats/format_test_support.hpp"
+#include "formats/textbook_rotations.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
 
 namespace sparse_mocap {
 namespace {
 
 using testing::has_warning;
+using testing::kAngles;
+using testing::kOrders;
+using testing::matrix_of;
 using testing::TemporaryFolder;
 
 MotionFile read_text(const std::string& text, ReadOptions options = {.bvh_unit_m = 1.0}) {
   const TemporaryFolder folder;
-  return read_bvh(folder.write("walk.bvh", text), options);
+  return testing::sound(read_bvh(folder.write("walk.bvh", text), options));
 }
 
 const std::string kTwoJoints =
@@ -52,48 +55,6 @@ std::string one_joint(const std::string& channels, const std::string& row) {
 
 Mat3 rotation_of(const MotionFile& file, int frame, int joint) {
   return file.motion.rotation(frame, joint).toRotationMatrix();
-}
-
-// Angles whose sines and cosines are ratios of whole numbers: 3-4-5, 5-12-13, 8-15-17.
-const std::string kAngles = "53.13010235415598 22.619864948040426 28.072486935852957";
-constexpr double s1 = 0.8, c1 = 0.6;
-constexpr double s2 = 5.0 / 13, c2 = 12.0 / 13;
-constexpr double s3 = 8.0 / 17, c3 = 15.0 / 17;
-
-struct Order {
-  const char* name;
-  std::array<double, 9> matrix;  // row by row
-};
-
-const std::array<Order, 6> kOrders{{
-    {"XYZ",
-     {c2 * c3, -c2* s3, s2,                               //
-      c1* s3 + c3* s1* s2, c1* c3 - s1* s2* s3, -c2* s1,  //
-      s1* s3 - c1* c3* s2, c3* s1 + c1* s2* s3, c1* c2}},
-    {"XZY",
-     {c2 * c3, -s2, c2* s3,                              //
-      s1* s3 + c1* c3* s2, c1* c2, c1* s2* s3 - c3* s1,  //
-      c3* s1* s2 - c1* s3, c2* s1, c1* c3 + s1* s2* s3}},
-    {"YXZ",
-     {c1 * c3 + s1 * s2 * s3, c3* s1* s2 - c1* s3, c2* s1,  //
-      c2* s3, c2* c3, -s2,                                  //
-      c1* s2* s3 - c3* s1, c1* c3* s2 + s1* s3, c1* c2}},
-    {"YZX",
-     {c1 * c2, s1* s3 - c1* c3* s2, c3* s1 + c1* s2* s3,  //
-      s2, c2* c3, -c2* s3,                                //
-      -c2* s1, c1* s3 + c3* s1* s2, c1* c3 - s1* s2* s3}},
-    {"ZYX",
-     {c1 * c2, c1* s2* s3 - c3* s1, s1* s3 + c1* c3* s2,  //
-      c2* s1, c1* c3 + s1* s2* s3, c3* s1* s2 - c1* s3,   //
-      -s2, c2* s3, c2* c3}},
-    {"ZXY",
-     {c1 * c3 - s1 * s2 * s3, -c2* s1, c1* s3 + c3* s1* s2,  //
-      c3* s1 + c1* s2* s3, c1* c2, s1* s3 - c1* c3* s2,      //
-      -c2* s3, s2, c2* c3}},
-}};
-
-Mat3 matrix_of(const Order& order) {
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(order.matrix.data());
 }
 
 std::string rotation_channels(const char* order) {

@@ -8,8 +8,10 @@
 #include <fstream>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "sparse_mocap/formats/motion_file.hpp"
+#include "support/invariants.hpp"
 
 namespace sparse_mocap::testing {
 
@@ -43,6 +45,7 @@ class TemporaryFolder {
 };
 
 // What the call complains about: "line: message", the message without the path; "" if it does not.
+// A message is one line; one that names a line of a file also says, after a semicolon, what to do.
 template <typename Call>
 std::string error_of(const Call& call) {
   try {
@@ -52,6 +55,9 @@ std::string error_of(const Call& call) {
     const auto path = error.location().path.string();
     EXPECT_TRUE(what.starts_with(path)) << what;
     EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+    if (error.location().line > 0) {
+      EXPECT_NE(what.find("; "), std::string::npos) << what << " has no remedy";
+    }
     return std::to_string(error.location().line) + ": " + what.substr(path.size());
   }
   return "";
@@ -65,6 +71,13 @@ inline bool has_warning(const MotionFile& file, const std::string& part) {
   for (const auto& warning : file.warnings)
     if (contains(warning.text, part)) return true;
   return false;
+}
+
+// The file itself, after a check of what must hold of every motion that is read.
+inline MotionFile sound(MotionFile file) {
+  EXPECT_EQ(joined(check_motion(file.motion)), "");
+  for (const auto& warning : file.warnings) EXPECT_GE(warning.count, 1) << warning.message();
+  return file;
 }
 
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {

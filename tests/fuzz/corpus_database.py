@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The corpus of motion databases: safetensors files of few frames, checksums right and wrong."""
+
+from __future__ import annotations
+
+import json
+import struct
+from typing import Any
+
+import xxhash
+from sparse_mocap import standard_joint_names
+
+COLUMNS = {
+    "angles": 43, "positions": 63, "root_motion": 4, "contacts": 2, "specific_force_pivot": 3,
+    "specific_force_end": 3, "angular_velocity": 3, "up": 3, "clip_index": 1,
+}  # fmt: skip
+Json = dict[str, Any]
+
+
+def digest(content: bytes) -> str:
+    return xxhash.xxh3_64_hexdigest(content)
+
+
+def clip(begin: int, end: int, **changes: object) -> Json:
+    entry: Json = {
+        "name": f"c{begin}", "actor": "a", "class": "k", "source": "s", "source_hash": "0",
+        "mirrored": False, "reversed": False, "tempo": 1.0, "begin": begin, "end": end,
+    }  # fmt: skip
+    return entry | changes
+
+
+def arrays_of(clips: list[int]) -> dict[str, bytes]:
+    """Frames of numbers that are all different; clips: their lengths."""
+    frames = sum(clips)
+    owners = [index for index, length in enumerate(clips) for _ in range(length)]
+    arrays = {}
+    for name, columns in COLUMNS.items():
+        values = [0.01 * value for value in range(frames * columns)]
+        arrays[name] = (
+            struct.pack(f"<{frames}i", *owners)
+            if name == "clip_index"
+            else struct.pack(f"<{len(values)}f", *values)
+        )
+    return arrays
+
+
+def metadata_of(clips: list[int]) -> dict[str, str]:
+    ends = [sum(clips[: index + 1]) for index in range(len(clips))]
+    joints = [{"name": name, "bone_m": [0, -0.1, 0]} for name in standard_joint_names()]
+    entries = [clip(end - length, end) for end, length in zip(ends, clips, strict=True)]
+    return {
+        "format": "sparse_mocap_database", "format_version": "1", "build": "{}", "rate_hz": "25.0",
+        "sites": '["left_wrist"]', "skeleton": json.dumps(joints), "clips": json.dumps(entries),
+    }  # fmt: skip
+
+
+def encoded(header: Json | str, data: bytes, size: int | None = None) -> bytes:
+    text = (header if isinstance(header, str) else json.dumps(header)).encode()
+    text += b" " * (-(8 + len(text)) % 64)
+    return struct.pack("<Q", len(text) if size is None else size) + text + data
+
+
+def sealed(metadata: dict[str, str], arrays: dict[str, bytes]) -> dict[str, str]:
+    sums = {name: digest(content) for name, content in arrays.items()}
+    whole = {key: metadata[key] for key in metadata} | {"checksums": json.dumps(sums)}
+    text = "".join(f"{key}\0{whole[key]}\0" for key in sorted(whole))
+    return whole | {"metadata_checksum": digest(text.encode())}
+
+
+def header_of(metadata: dict[str, str], arrays: dict[str, bytes]) -> Json:
+    header: Json = {"__metadata__": sealed(metadata, arrays)}
+    begin = 0
+    for name, content in arrays.items():
+        columns = COLUMNS.get(name, 1)
+        header[name] = {
+            "dtype": "I32" if name == "clip_index" else "F32",
+            "shape": [len(content) // 4 // columns, columns],
+            "data_offsets": [begin, begin + len(content)],
+        }
+        begin += len(content)
+    return header
+
+
+def file_of(metadata: dict[str, str], arrays: dict[str, bytes]) -> bytes:
+    return encoded(header_of(metadata, arrays), b"".join(arrays.values()))
+
+
+def damaged_metadata() -> dict[str, bytes]:
+    """Claims that are checksummed but false."""
+    good, arrays = metadata_of([1]), arrays_of([1])
+    files = {f"without_{key}": {k: v for k, v in good.items() if k != key} for key in good}
+    joints = json.loads(good["skeleton"])
+    texts = {
+        "format": ["other", ""],
+        "format_version": ["0", "2", "one"],
+        "rate_hz": ["0", "1e9", "nan", "-25", '"25"', "[]", ""],
+        "sites": ["[]", "{}", "[1]", '["a","b"]', '["\\ud800"]', "null"],
+        "skeleton": [
+            "[]", json.dumps(joints[1:]), json.dumps(joints[::-1]),
+            json.dumps([{**joint, "bone_m": [0, 0]} for joint in joints]),
+            json.dumps([{**joint, "bone_m": [1e9, 0, 0]} for joint in joints]),
+            json.dumps([{**joint, "bone_m": [0, 0, 0]} for joint in joints]),
+            json.dumps([{**joint, "bone_m": "no"} for joint in joints]),
+            "[" * 500,
+        ],
+        "clips": [
+            "[]", "{}", "[1]", json.dumps([clip(0, 2)]), json.dumps([clip(0, 0)]),
+            json.dumps([clip(1, 1)]), json.dumps([clip(0, -1)]), json.dumps([clip(0, 2**40)]),
+            json.dumps([clip(0, 1), clip(1, 2)]), json.dumps([clip(0, 1, tempo="fast")]),
+            json.dumps([clip(0, 1, tempo=-1.0)]), json.dumps([clip(0, 1, tempo=0.0)]),
+            json.dumps([clip(0, 1, mirrored=1)]), json.dumps([clip(0, 1, name=None)]),
+            json.dumps([clip(0, 1) | {"end": 1.9}]),
+            json.dumps([clip(0, 1, reversed=True, mirrored=True, tempo=1.25)]),
+        ],
+        "build": ["", "no JSON", "{" * 300],
+    }  # fmt: skip
+    for key, values in texts.items():
+        files |= {f"{key}_{index}": good | {key: value} for index, value in enumerate(values)}
+    return {name: file_of(metadata, arrays) for name, metadata in files.items()}
+
+
+def damaged_arrays() -> dict[str, bytes]:
+    metadata, good = metadata_of([1]), arrays_of([1])
+    files = {f"no_{name}": {n: a for n, a in good.items() if n != name} for name in good}
+    files |= {f"empty_{name}": good | {name: b""} for name in ("angles", "clip_index")}
+    files |= {f"nan_in_{n}": good | {n: b"\0\0\xc0\x7f" + good[n][4:]} for n in list(good)[:8]}
+    files |= {f"inf_in_{n}": good | {n: b"\0\0\x80\xff" + good[n][4:]} for n in ("angles", "up")}
+    files["longer_angles"] = good | {"angles": good["angles"] * 2}
+    files["clip_index_of_none"] = good | {"clip_index": struct.pack("<i", -1)}
+    files["clip_index_beyond"] = good | {"clip_index": struct.pack("<i", 2**31 - 1)}
+    files["another_array"] = good | {"spare": b"\1\2\3\4"}
+    files["no_arrays"] = {}
+    return {name: file_of(metadata, arrays) for name, arrays in files.items()}
+
+
+def damaged_headers() -> dict[str, bytes]:
+    arrays = arrays_of([1])
+    data = b"".join(arrays.values())
+    good = header_of(metadata_of([1]), arrays)
+    files = {}
+    entries: dict[str, Json] = {
+        "overlap": {"data_offsets": [0, 252]}, "hole": {"data_offsets": [176, 424]},
+        "backwards": {"data_offsets": [424, 172]}, "beyond": {"data_offsets": [172, 10**9]},
+        "wraps": {"data_offsets": [2**64 - 4, 252]}, "too_large": {"shape": [2**33, 2**33]},
+        "negative": {"shape": [-1, -63]}, "flat": {"shape": [63]}, "cube": {"shape": [1, 63, 1]},
+        "turned": {"shape": [63, 1]}, "fraction": {"shape": [0.5, 126]}, "f64": {"dtype": "F64"},
+        "i32": {"dtype": "I32"}, "no_dtype": {"dtype": None}, "no_shape": {"shape": None},
+        "three_offsets": {"data_offsets": [172, 300, 424]},
+    }  # fmt: skip
+    for name, change in entries.items():
+        files[f"array_{name}"] = encoded(good | {"positions": good["positions"] | change}, data)
+    text = json.dumps(good)
+    files |= {
+        "header_not_json": encoded(text[:-1], data),
+        "header_a_list": encoded("[]", b""),
+        "header_twice_a_key": encoded(text[:-1] + ',"up":' + json.dumps(good["up"]) + "}", data),
+        "header_with_nul": encoded(text + "\0", data),
+        "header_in_latin1": encoded(good, data).replace(b"left_wrist", b"left_wr\xefst"),
+        "header_longer_than_file": encoded(text, data, 10**6),
+        "header_of_no_bytes": encoded(text, data, 0),
+        "header_of_all_bits": encoded(text, data, 2**64 - 1),
+        "header_deep": encoded("[" * 2000, b""),
+        "metadata_a_number": encoded(good | {"__metadata__": 5}, data),
+        "metadata_of_numbers": encoded(good | {"__metadata__": {"format": 5}}, data),
+        "bytes_behind": encoded(good, data + b"\0\0\0\0"),
+        "checksums_wrong": encoded(good, data[:-5] + b"\1" + data[-4:]),
+    }
+    return files
+
+
+def database_files() -> dict[str, bytes]:
+    whole = file_of(metadata_of([1]), arrays_of([1]))
+    files = {
+        "whole": whole,
+        "two_clips": file_of(metadata_of([1, 1]), arrays_of([1, 1])),
+        "empty": b"", "short": b"\1\2\3\4\5\6\7", "zip": b"PK\x03\x04" + b"\0" * 60,
+        "pickle": b"\x80\x04\x95\x10\0\0\0\0\0\0\0}\x94.",
+        "of_another_format": encoded(
+            {"x": {"dtype": "F32", "shape": [0], "data_offsets": [0, 0]}}, b""
+        ),
+    }  # fmt: skip
+    files |= {f"cut_{part:02}": whole[: len(whole) * part // 12] for part in range(1, 12)}
+    files |= damaged_metadata() | damaged_arrays() | damaged_headers()
+    return files

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fuzz/targets.hpp"
+
+#include <cstddef>
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sparse_mocap/database/motion_database.hpp"
+#include "sparse_mocap/database/safetensors.hpp"
+#include "sparse_mocap/formats/acclaim.hpp"
+#include "sparse_mocap/formats/bvh.hpp"
+#include "support/invariants.hpp"
+
+namespace sparse_mocap::fuzz {
+namespace {
+
+// What reading came to: a motion, or what the error says.
+struct Outcome {
+  std::optional<Motion> motion;
+  std::string error;
+  std::string problem;  // of the outcome itself
+};
+
+// Small enough for an input never to take long or much memory; every third input is read with
+// another up axis and every second may lack frames, so that those ways are walked too.
+ReadOptions options_for(std::string_view input) {
+  ReadOptions options;
+  options.max_joints = 200;
+  options.max_depth = 100;
+  options.max_frames = 10'000;
+  options.max_rotations = 100'000;
+  options.bvh_up = static_cast<Axis>((input.size() + 1) % 3);
+  options.allow_no_frames = input.size() % 2 == 0;
+  return options;
+}
+
+std::string problem_of(const FormatError& error, bool has_lines) {
+  const std::string what = error.what();
+  const auto& location = error.location();
+  if (!what.starts_with(location.path.string())) return "the error does not begin with the file";
+  if (what.find_first_of("\r\n") != std::string::npos) return "the error has several lines";
+  if (has_lines && location.line < 1) return "the error names no line";
+  if (what.find("; ") == std::string::npos) return "the error names no remedy";
+  return "";
+}
+
+std::string problem_of(const std::vector<ReadWarning>& warnings) {
+  for (const auto& warning : warnings) {
+    if (warning.count < 1 || warning.text.empty()) return "a warning is empty";
+    if (warning.message().find_first_of("\r\n") != std::string::npos)
+      return "a warning has several lines";
+  }
+  return warnings.size() > 50 ? "warnings of a kind are not counted together" : "";
+}
+
+template <typename Read>
+Outcome outcome_of(const Read& read) {
+  Outcome outcome;
+  try {
+    MotionFile file = read();
+    outcome.problem = testing::joined(testing::check_motion(file.motion));
+    if (outcome.problem.empty()) outcome.problem = problem_of(file.warnings);
+    outcome.motion = std::move(file.motion);
+  } catch (const FormatError& error) {
+    outcome.error = error.what();
+    outcome.problem = problem_of(error, true);
+  }
+  return outcome;
+}
+
+std::string with_crlf(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '\n') result += '\r';
+    result += c;
+  }
+  return result;
+}
+
+bool is_same(const Motion& a, const Motion& b) {
+  const auto is_equal = [](const Quat& p, const Quat& q) { return p.coeffs() == q.coeffs(); };
+  return a.frame_time_s == b.frame_time_s && a.root_positions == b.root_positions &&
+         a.skeleton.num_joints() == b.skeleton.num_joints() &&
+         std::equal(a.rotations.begin(), a.rotations.end(), b.rotations.begin(), b.rotations.end(),
+                    is_equal);
+}
+
+// Reads the input as it is and with the line ends of Windows.
+template <typename Read>
+std::string try_both_line_ends(std::string_view input, const Read& read) {
+  const auto first = outcome_of([&] { return read(std::string(input)); });
+  const bool is_plain =
+      input.find('\r') == std::string_view::npos && input.find('\0') == std::string_view::npos;
+  if (!first.problem.empty() || !is_plain) return first.problem;
+  const auto second = outcome_of([&] { return read(with_crlf(input)); });
+  if (second.error != first.error)
+    return "with CRLF it says \"" + second.error + "\" instead of \"" + first.error + "\"";
+  if (first.motion && !is_same(*first.motion, *second.motion))
+    return "with CRLF it moves otherwise";
+  return second.problem;
+}
+
+// The same arrays and metadata with the checksums that belong to them.
+std::vector<std::byte> resealed(std::span<const std::byte> file) {
+  const auto view = parse_safetensors(file, "fuzz.smdb");
+  auto metadata = view.metadata;
+  nlohmann::json checksums = nlohmann::json::object();
+  for (const auto& tensor : view.tensors) checksums[tensor.name] = checksum(tensor.bytes);
+  metadata["checksums"] = checksums.dump();
+  metadata[kMetadataChecksum] = metadata_checksum(metadata);
+  const auto header = safetensors_header(metadata, view.tensors);
+  const auto header_bytes = std::as_bytes(std::span(header));
+  std::vector<std::byte> result(header_bytes.begin(), header_bytes.end());
+  for (const auto& tensor : view.tensors)
+    result.insert(result.end(), tensor.bytes.begin(), tensor.bytes.end());
+  return result;
+}
+
+std::string try_database_bytes(std::vector<std::byte> bytes) {
+  try {
+    const auto database = MotionDatabase::from_bytes(own_bytes(std::move(bytes)), "fuzz.smdb");
+    return testing::joined(testing::check_database(*database));
+  } catch (const FormatError& error) {
+    return problem_of(error, false);
+  }
+}
+
+}  // namespace
+
+std::string try_bvh(std::string_view input) {
+  const auto options = options_for(input);
+  return try_both_line_ends(
+      input, [&](std::string text) { return bvh_from_text(std::move(text), "fuzz.bvh", options); });
+}
+
+std::string try_acclaim(std::string_view input) {
+  constexpr std::string_view kBetween = "#AMC\n";
+  const auto options = options_for(input);
+  return try_both_line_ends(input, [&](const std::string& text) {
+    const bool is_crlf = text.find("\r\n") != std::string::npos;
+    const auto between = is_crlf ? with_crlf(kBetween) : std::string(kBetween);
+    const auto at = text.find(between);
+    const auto asf = asf_from_text(text.substr(0, at), "fuzz.asf", options);
+    const auto amc = at == std::string::npos ? "" : text.substr(at + between.size());
+    auto file = amc_from_text(amc, "fuzz.amc", asf, options);
+    file.warnings.insert(file.warnings.end(), asf.warnings.begin(), asf.warnings.end());
+    return file;
+  });
+}
+
+std::string try_database(std::string_view input) {
+  const auto bytes = std::as_bytes(std::span(input));
+  if (auto problem = try_database_bytes({bytes.begin(), bytes.end()}); !problem.empty())
+    return problem;
+  try {
+    return try_database_bytes(resealed(bytes));
+  } catch (const FormatError& error) {
+    return problem_of(error, false);
+  }
+}
+
+}  // namespace sparse_mocap::fuzz
