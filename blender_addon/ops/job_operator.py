@@ -122,8 +122,9 @@ class JobOperator:
         self._timer = manager.event_timer_add(_TICK_S / 10.0, window=context.window)
 
     def _show_progress(self, context: Context, job: Job) -> None:
-        compat.redraw_views(context)
         slices = self._slices
+        if slices is None:
+            compat.redraw_views(context)  # the sidebar shows the job
         fraction = job.fraction if slices is None else slices.fraction
         label = job.label if slices is None else "Setting keys"
         compat.show_status(context, label, fraction)

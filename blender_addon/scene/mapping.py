@@ -8,7 +8,7 @@ from bpy.props import CollectionProperty, PointerProperty, StringProperty
 from bpy.types import Context, PropertyGroup, WindowManager
 
 from ..session.core import core
-from ..session.mapping import Mapped
+from ..session.mapping import Mapped, last_mapped
 
 
 class SPARSEMOCAP_PG_mapped_joint(PropertyGroup):
@@ -39,7 +39,8 @@ def mapping_of(context: Context) -> SPARSEMOCAP_PG_mapping:
 
 
 def show_mapping(context: Context, found: Mapped) -> None:
-    """Let the rows show a skeleton's mapping."""
+    """Let the rows show a skeleton's mapping; it is the one at hand from now on."""
+    last_mapped[:] = [found]
     rows = mapping_of(context)
     rows.sources.clear()
     for name in found.source_joints:

@@ -113,9 +113,10 @@ def load_motion(path: str, reading: Reading, asf: str | None = None) -> LoadedMo
     )
     name = Path(path).stem
     found = mapped(name, motion)
-    last_mapped[:] = [found]
     is_standard = reading.is_standard and motion.num_frames > 0
     if is_standard:
+        if found.problem:
+            last_mapped[:] = [found]  # to be mended in its panel
         motion, more = sparse_mocap.to_standard(motion)
         warnings = warnings + more
     return LoadedMotion(

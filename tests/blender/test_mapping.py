@@ -58,3 +58,22 @@ def test_what_is_wrong_is_said_in_one_line(tmp_path):
     bad = tmp_path / "bad.json"
     bad.write_text("{")
     assert "bad.json" in error_of(lambda: bpy.ops.sparse_mocap.load_mapping(filepath=str(bad)))
+
+
+def test_a_skeleton_that_is_no_person_is_shown_to_be_mended(tmp_path):
+    os.environ["SPARSE_MOCAP_MAPPINGS"] = str(tmp_path / "mappings")
+    path = tmp_path / "snake.bvh"
+    channels = "CHANNELS 3 Zrotation Xrotation Yrotation"
+    body = f"JOINT b\n{{\nOFFSET 0 9 0\n{channels}\n}}"
+    path.write_text(
+        f"HIERARCHY\nROOT a\n{{\nOFFSET 0 0 0\n{channels}\n{body}\n}}\n"
+        "MOTION\nFrames: 1\nFrame Time: 0.1\n0 0 0 0 0 0\n"
+    )
+    line = error_of(
+        lambda: bpy.ops.sparse_mocap.import_bvh(filepath=str(path), standard_skeleton=True)
+    )
+    assert "human" in line
+    rows = bpy.context.window_manager.sparse_mocap_mapping
+    assert rows.sources.keys() == ["a", "b"]
+    assert addon("session.mapping").last_mapped[0].name == "snake"
+    assert bpy.ops.sparse_mocap.import_bvh(filepath=str(path)) == {"FINISHED"}

@@ -3,6 +3,7 @@
 
 import os
 import subprocess
+import tempfile
 from pathlib import Path
 
 import bpy
@@ -18,13 +19,16 @@ def _in_window(scenario: str, tmp_path: Path) -> None:
         raise Skipped("there is no display")
     options = ["--factory-startup", "-noaudio", "--enable-event-simulate"]
     files = [library().motions, library().database, library().take, tmp_path]
-    done = subprocess.run(
-        [bpy.app.binary_path, *options, "--python", SCRIPT, "--", scenario, *map(str, files)],
-        env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"},
-        capture_output=True,
-        text=True,
-        timeout=100,
-    )
+    command = [bpy.app.binary_path, *options, "--python", SCRIPT, "--", scenario]
+    with tempfile.TemporaryDirectory() as settings:
+        own = {"BLENDER_USER_CONFIG": settings, "LIBGL_ALWAYS_SOFTWARE": "1"}
+        done = subprocess.run(
+            [*command, *map(str, files)],
+            env={**os.environ, **own},
+            capture_output=True,
+            text=True,
+            timeout=100,
+        )
     assert done.returncode == 0, done.stdout + done.stderr
     assert "Traceback" not in done.stdout + done.stderr, done.stdout + done.stderr
 
