@@ -115,6 +115,7 @@ def build_job(sources: list[str], output: str, choices: BuildChoices) -> tuple[J
             tempo_copies=TEMPOS if choices.tempos else (),
             exclude=patterns,
             strict=choices.strict,
+            mappings=sparse_mocap.mapping_folder(),
             progress=progress,
         )
         summary = BuildSummary(
