@@ -36,6 +36,8 @@ def arrays_of(clips: list[int]) -> dict[str, bytes]:
     arrays = {}
     for name, columns in COLUMNS.items():
         values = [0.01 * value for value in range(frames * columns)]
+        if name == "up":
+            values = [0.0, 1.0, 0.0] * frames
         arrays[name] = (
             struct.pack(f"<{frames}i", *owners)
             if name == "clip_index"
@@ -125,6 +127,7 @@ def damaged_arrays() -> dict[str, bytes]:
     files |= {f"empty_{name}": good | {name: b""} for name in ("angles", "clip_index")}
     files |= {f"nan_in_{n}": good | {n: b"\0\0\xc0\x7f" + good[n][4:]} for n in list(good)[:8]}
     files |= {f"inf_in_{n}": good | {n: b"\0\0\x80\xff" + good[n][4:]} for n in ("angles", "up")}
+    files["up_not_of_unit_length"] = good | {"up": struct.pack("<3f", 0.0, 1.1, 0.0)}
     files["longer_angles"] = good | {"angles": good["angles"] * 2}
     files["clip_index_of_none"] = good | {"clip_index": struct.pack("<i", -1)}
     files["clip_index_beyond"] = good | {"clip_index": struct.pack("<i", 2**31 - 1)}

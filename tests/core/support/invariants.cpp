@@ -144,6 +144,10 @@ Violations check_database(const MotionDatabase& database) {
   check_rows("specific_force_end", database.specific_force_end(), site_columns);
   check_rows("angular_velocity", database.angular_velocity(), site_columns);
   check_rows("up", database.up(), site_columns);
+  for (Eigen::Index at = 0; at + 2 < database.up().cols(); at += 3) {
+    const Eigen::ArrayXf lengths = database.up().middleCols(at, 3).rowwise().norm();
+    checks.require(((lengths - 1.0F).abs() < 2e-3F).all(), "a direction has not unit length");
+  }
   int frame = 0;
   for (std::size_t c = 0; c < database.clips().size(); ++c) {
     const Clip& clip = database.clips()[c];
