@@ -149,7 +149,7 @@ Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& ha
     clip.skeleton = out.skeleton.id;
     for (const auto& warning : read.warnings) {
       out.warnings.push_back(warning.message());
-      ++clip.warnings[kind_of_warning(warning.text)];
+      clip.warnings[kind_of_warning(warning.text)] += warning.count;
     }
     for (const auto& text : texts) {
       out.warnings.push_back(file.path.filename().string() + ": " + text);

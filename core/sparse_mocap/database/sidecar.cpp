@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <set>
 #include <string_view>
 
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/base/files.hpp"
+#include "sparse_mocap/base/nearest_name.hpp"
 #include "sparse_mocap/base/text_scanner.hpp"
 
 namespace sparse_mocap {
@@ -43,7 +43,8 @@ class LineReader {
     Field field{"", static_cast<int>(at_) + 1};
     if (at_ < line_.size() && line_[at_] == '"') {
       field.text = quoted();
-      if (at_ < line_.size() && line_[at_] != ',') fail("text follows a quoted field", "");
+      if (at_ < line_.size() && line_[at_] != ',')
+        fail("text follows a quoted field", "put a comma between fields");
     } else {
       const auto comma = std::min(line_.find(',', at_), line_.size());
       field.text = trimmed(line_.substr(at_, comma - at_));
@@ -77,26 +78,6 @@ class LineReader {
   std::size_t at_ = 0;
 };
 
-// How many letters must be changed, added or dropped (Levenshtein).
-std::size_t edits_between(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> before(b.size() + 1);
-  std::iota(before.begin(), before.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::vector<std::size_t> now{i};
-    for (std::size_t j = 1; j <= b.size(); ++j)
-      now.push_back(
-          std::min({before[j] + 1, now[j - 1] + 1, before[j - 1] + (a[i - 1] != b[j - 1])}));
-    before = std::move(now);
-  }
-  return before.back();
-}
-
-std::string_view nearest_column(std::string_view name) {
-  return *std::min_element(kColumns.begin(), kColumns.end(), [&](auto a, auto b) {
-    return edits_between(name, a) < edits_between(name, b);
-  });
-}
-
 // What each column of the table holds.
 std::vector<std::string> columns_of(const std::vector<Field>& header, FileLocation where) {
   std::vector<std::string> columns;
@@ -105,10 +86,10 @@ std::vector<std::string> columns_of(const std::vector<Field>& header, FileLocati
     const std::string name = lower_case(field.text);
     if (std::find(kColumns.begin(), kColumns.end(), name) == kColumns.end())
       throw FormatError(where, "unknown column " + in_quotes(field.text),
-                        "did you mean " + in_quotes(nearest_column(name)) +
+                        "did you mean " + in_quotes(std::string(nearest_name(name, kColumns))) +
                             "? Known are file, actor, class, source, license");
     if (std::find(columns.begin(), columns.end(), name) != columns.end())
-      throw FormatError(where, "the column " + in_quotes(name) + " occurs twice");
+      throw FormatError(where, "the column " + in_quotes(name) + " occurs twice", "leave one out");
     columns.push_back(name);
   }
   where.column = 1;
@@ -134,8 +115,10 @@ std::array<std::string, 3> names_of(const SourceFile& file) {
 void Sidecar::add_row(const std::vector<std::string>& columns, const std::vector<Field>& fields,
                       FileLocation where) {
   if (fields.size() != columns.size())
-    throw FormatError(where, "has " + std::to_string(fields.size()) + " fields, the header has " +
-                                 std::to_string(columns.size()));
+    throw FormatError(where,
+                      "has " + std::to_string(fields.size()) + " fields, the header has " +
+                          std::to_string(columns.size()),
+                      "put text that holds a comma within quotes");
   Row row;
   row.line = where.line;
   const std::map<std::string_view, std::string*> targets{{"file", &row.file},
@@ -147,11 +130,14 @@ void Sidecar::add_row(const std::vector<std::string>& columns, const std::vector
     *targets.at(columns[i]) = fields[i].text;
     if (columns[i] == "file") where.column = fields[i].column;
   }
-  if (row.file.empty()) throw FormatError(where, "names no file");
+  if (row.file.empty())
+    throw FormatError(where, "names no file", "write its name or leave the row out");
   const auto [at, is_new] = rows_.emplace(key_of(row.file), row);
   if (!is_new)
-    throw FormatError(where, in_quotes(row.file) + " is described in line " +
-                                 std::to_string(at->second.line) + " already");
+    throw FormatError(where,
+                      in_quotes(row.file) + " is described in line " +
+                          std::to_string(at->second.line) + " already",
+                      "leave one of the rows out");
 }
 
 Sidecar Sidecar::read(const std::filesystem::path& path) {

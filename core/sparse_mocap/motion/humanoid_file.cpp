@@ -20,7 +20,8 @@ nlohmann::json parse(const std::filesystem::path& path) {
   try {
     return parse_json_strictly(read_file(path, kMaxBytes));
   } catch (const std::invalid_argument& error) {
-    throw FormatError({path}, std::string("the mapping ") + error.what());
+    throw FormatError({path}, std::string("the mapping ") + error.what(),
+                      "write one with inspect --save-mapping and edit that");
   }
 }
 
@@ -38,7 +39,8 @@ JointNames read_mapping(const std::filesystem::path& path) {
   try {
     joints = file.at("joints").get<JointNames>();
   } catch (const nlohmann::json::exception&) {
-    throw FormatError({path}, "'joints' must be an object from standard joints to the file's");
+    throw FormatError({path}, "'joints' must be an object from standard joints to the file's",
+                      R"(as in {"lfemur": "LeftUpLeg"})");
   }
   const auto& names = standard_joint_names();
   for (const auto& [standard, name] : joints)

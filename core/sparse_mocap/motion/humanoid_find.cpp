@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
+#include "sparse_mocap/base/nearest_name.hpp"
 #include "sparse_mocap/motion/humanoid.hpp"
 
 namespace sparse_mocap {
@@ -60,39 +60,11 @@ void find_parts_by_name(const Skeleton& source, PartJoints& parts) {
   }
 }
 
-// How many letters must change to make one name the other.
-int edit_distance(const std::string& a, const std::string& b) {
-  std::vector<int> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    int diagonal = row[0];
-    row[0] = static_cast<int>(i);
-    for (std::size_t k = 1; k <= b.size(); ++k) {
-      const int replaced = diagonal + (a[i - 1] == b[k - 1] ? 0 : 1);
-      diagonal = row[k];
-      row[k] = std::min({row[k] + 1, row[k - 1] + 1, replaced});
-    }
-  }
-  return row.back();
-}
-
-template <typename Names>
-std::string nearest_name(const std::string& wanted, const Names& names) {
-  std::string nearest;
-  int shortest = std::numeric_limits<int>::max();
-  for (const auto& name : names) {
-    const int distance = edit_distance(wanted, std::string(name));
-    if (distance < shortest) nearest = name;
-    shortest = std::min(shortest, distance);
-  }
-  return nearest;
-}
-
 std::array<int, kNumStandardJoints> joints_by_hand(const Skeleton& source,
                                                    const JointNames& by_hand) {
   std::array<int, kNumStandardJoints> found;
   found.fill(-1);
-  std::vector<std::string> source_names;
+  std::vector<std::string_view> source_names;
   for (const auto& joint : source.joints()) source_names.push_back(joint.name);
   const auto& names = standard_joint_names();
   for (const auto& [standard, name] : by_hand) {
@@ -104,7 +76,8 @@ std::array<int, kNumStandardJoints> joints_by_hand(const Skeleton& source,
     const int joint = source.find(name);
     if (joint < 0)
       throw MappingError("mapping by hand: the skeleton has no joint '" + name +
-                         "', the nearest is '" + nearest_name(name, source_names) + "'");
+                         "', the nearest is '" + std::string(nearest_name(name, source_names)) +
+                         "'");
     found[static_cast<std::size_t>(at - names.begin())] = joint;
   }
   return found;
@@ -165,7 +138,7 @@ int& joint_of(PartJoints& parts, BodyPart part, Side side) {
 }
 
 std::string nearest_standard_joint(const std::string& name) {
-  return nearest_name(name, standard_joint_names());
+  return std::string(nearest_name(name, standard_joint_names()));
 }
 
 std::vector<int> path_down(const Skeleton& source, int ancestor, int joint) {
