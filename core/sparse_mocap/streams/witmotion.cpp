@@ -269,8 +269,8 @@ Head BleParser::inspect(ByteView head) {
   const auto is_header = [&](std::size_t at) {
     return head[at] == kHeader && (head[at + 1] == kBleData || head[at + 1] == kBleReply);
   };
-  if (head.size() < 2) return head[0] == kHeader ? Head::more() : Head::skip();
-  if (!is_header(0)) {
+  if (head.size() < 2 && head[0] == kHeader) return Head::more();
+  if (head[0] != kHeader || !is_header(0)) {
     is_locked_ = false;
     return Head::skip();
   }

@@ -218,6 +218,10 @@ void Parser::take_measured(Device& device, const Measured& measured) {
     sample.counter = step.counter;
     if (period_s_ > 0.0) sample.time_s = static_cast<double>(step.counter) * period_s_;
   }
+  // Packets of GNSS data alone tell times of their own, which go back and forth.
+  if (!sample.has_specific_force() && !sample.has_orientation() &&
+      !sample.angular_velocity.allFinite())
+    return;
   if (measured.time_fine) {
     const auto step = device.clock.take(*measured.time_fine);
     sample.time_s = step.time_s;
@@ -228,9 +232,6 @@ void Parser::take_measured(Device& device, const Measured& measured) {
       return;
     }
   }
-  if (!sample.has_specific_force() && !sample.has_orientation() &&
-      !sample.angular_velocity.allFinite())
-    return;
   sample.flags |= device.next_flags;
   device.next_flags = 0;
   emit(sample);

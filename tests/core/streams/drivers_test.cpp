@@ -136,11 +136,11 @@ TEST(Drivers, RefuseWhatTheyDoNotKnow) {
     return "no error";
   };
   EXPECT_EQ(message([] { make_parser("xsens"); }),
-            "unknown driver 'xsens'; the nearest is 'xsens_mt'");
+            R"(unknown driver "xsens"; the nearest is 'xsens_mt')");
   EXPECT_EQ(message([] {
               make_parser("witmotion", {{"rate", "100"}});
             }),
-            "driver witmotion has no option 'rate'; the nearest is 'name'");
+            R"(driver witmotion has no option "rate"; the nearest is 'name')");
   EXPECT_NE(message([] {
               make_parser("text_line", {{"columns", "ax,ay,a"}});
             }).find("nearest"),
