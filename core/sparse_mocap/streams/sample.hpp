@@ -26,7 +26,7 @@ enum SampleFlag : unsigned {
 // with z up, specific_force is (0, 0, +9.81). NaN where the device did not send it.
 struct Sample {
   int sensor = 0;             // index into StreamParser::sensor_names()
-  double time_s = kAbsent;    // the device's clock, unwrapped: ascends as long as the parser lives
+  double time_s = kAbsent;    // the device's clock, unwrapped: ascends until the next reset()
   std::int64_t counter = -1;  // the device's packet counter, unwrapped; -1: none
   Vec3 specific_force = Vec3::Constant(kAbsent);                     // m/s^2
   Vec3 angular_velocity = Vec3::Constant(kAbsent);                   // rad/s
