@@ -4,6 +4,7 @@
 #include <array>
 
 #include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/base/nearest_name.hpp"
 #include "sparse_mocap/base/text_scanner.hpp"
 #include "sparse_mocap/streams/slimevr.hpp"
 #include "sparse_mocap/streams/text_line.hpp"

@@ -3,30 +3,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
-#include <numeric>
-#include <utility>
 
 #include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/base/nearest_name.hpp"
 #include "sparse_mocap/base/text_scanner.hpp"
 
 namespace sparse_mocap::streams {
 namespace {
-
-// Levenshtein's distance.
-std::size_t edits(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
 
 std::string plain(double value) {
   const auto text = std::to_string(value);
@@ -35,10 +18,6 @@ std::string plain(double value) {
 }
 
 }  // namespace
-
-std::string_view nearest_name(std::string_view name, std::span<const std::string_view> names) {
-  return *std::ranges::min_element(names, {}, [&](auto known) { return edits(name, known); });
-}
 
 Options::Options(std::string_view driver, std::span<const OptionSpec> specs, const OptionMap& given)
     : driver_(driver) {

@@ -40,7 +40,4 @@ class Options {
   OptionMap values_;
 };
 
-// The name with the fewest letters to change.
-std::string_view nearest_name(std::string_view name, std::span<const std::string_view> names);
-
 }  // namespace sparse_mocap::streams

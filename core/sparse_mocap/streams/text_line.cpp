@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/base/nearest_name.hpp"
 #include "sparse_mocap/base/text_scanner.hpp"
 #include "sparse_mocap/streams/orientation.hpp"
 #include "sparse_mocap/streams/text_fields.hpp"
