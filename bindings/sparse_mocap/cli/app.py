@@ -16,6 +16,7 @@ _COMMANDS = {
     "convert": ".convert:convert",
     "database": ".database:database",
     "evaluate": ".evaluate:evaluate",
+    "import": ".import_recording:import_recording",
     "inspect": ".inspect:inspect",
     "reconstruct": ".reconstruct:reconstruct",
     "simulate": ".simulate:simulate",

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The protocols of sensors."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+SAMPLE_FLAGS: dict[str, int]
+"""The bits of a sample's flags: clipped, after_gap, after_reset, gravity_restored."""
+
+class StreamParser:
+    """Turns a device's bytes into samples; options are those of driver_options. Thread-safe.
+
+    Raises ConfigError for an unknown driver or option, naming the nearest, and for wrong values.
+    """
+
+    def __init__(self, driver: str, **options: object) -> None: ...
+    def feed(self, data: bytes, sender: str | None = None) -> dict[str, NDArray[np.generic]]:
+        """The samples (N) that the bytes complete, however they are cut; NaN for what is absent.
+
+        ``sensor`` (N,) index into sensor_names; ``time_s`` (N,) the device's clock, unwrapped;
+        ``counter`` (N,) unwrapped, -1 for none; ``specific_force`` (N, 3) m/s^2;
+        ``angular_velocity`` (N, 3) rad/s; ``orientation`` (N, 4) R_world_sensor, world y up;
+        ``magnetic_field`` (N, 3) in the device's unit; ``flags`` (N,) of SAMPLE_FLAGS.
+        With a sender the data are one datagram.
+        """
+    def reset(self) -> None:
+        """The connection was opened anew: sensors keep their indices, counters go on."""
+    def take_replies(self) -> list[bytes]:
+        """What the protocol wants answered."""
+    @property
+    def counters(self) -> dict[str, int]: ...
+    @property
+    def sensor_names(self) -> list[str]: ...
+    @property
+    def last_message(self) -> str:
+        """What the device told last in words, such as an error."""
+
+class StreamEncoder:
+    """What a device with these sensors would send."""
+
+    def __init__(self, driver: str, sensor_names: Sequence[str], **options: object) -> None: ...
+    def hello(self) -> list[bytes]: ...
+    def encode(
+        self,
+        time_s: float,
+        counter: int,
+        specific_force: ArrayLike,
+        angular_velocity: ArrayLike | None = None,
+        orientation: ArrayLike | None = None,
+    ) -> list[bytes]:
+        """The packets of one instant: (S, 3) m/s^2, (S, 3) rad/s, (S, 4) R_world_sensor."""
+    def respond(self, from_host: bytes) -> bytes: ...
+
+def driver_names() -> list[str]: ...
+def driver_options(driver: str) -> dict[str, tuple[str, str]]:
+    """Each option's default and what it means."""
+
+def start_commands(driver: str, **options: object) -> list[bytes]:
+    """What makes the device stream, to be sent one after the other."""
+
+def keep_alive_commands(driver: str, **options: object) -> list[bytes]:
+    """What must be sent every second for the device to go on."""

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``sparse-mocap import``: what other programs recorded, as takes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from .. import site_names, write_take
+from ..imports import read_recording, recording_formats
+from .console import warn
+from .options import FilePath, Sites, check_ending
+
+
+class SensorSite(click.ParamType):  # type: ignore[type-arg]
+    """A recording's sensor and where it was worn."""
+
+    name = "NAME=SITE"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, str]:
+        """Returns the sensor's name and its site."""
+        if isinstance(value, tuple):
+            return value
+        name, is_given, site = str(value).rpartition("=")
+        if not is_given:
+            self.fail(f"{value!r} is not NAME=SITE", param, ctx)
+        (site,) = Sites().convert(site, param, ctx)
+        return name.strip(), site
+
+
+@click.command(
+    name="import", help=f"Turns a recording into a take: {', '.join(recording_formats())}."
+)
+@click.argument("recording", metavar="RECORDING", type=FilePath)
+@click.option("-o", "--output", type=FilePath, required=True, help="The take file (.csv).")
+@click.option(
+    "--site", "sites", type=SensorSite(), multiple=True,
+    help="Where a sensor was worn, as in 'Right Foot=right_ankle'. May be repeated; the others"
+    " keep their names.",
+)  # fmt: skip
+def import_recording(recording: Path, output: Path, sites: tuple[tuple[str, str], ...]) -> None:
+    """Turns a recording into a take."""
+    check_ending(output, ".csv")
+    take = read_recording(recording, dict(sites))
+    write_take(output, take)
+    for comment in take.comments:
+        click.echo(comment)
+    for name, record in take.sensors.items():
+        click.echo(f"{name}: {len(record.times_s)} samples, {record.times_s[-1]:.2f} s")
+    unnamed = [name for name in take.sensors if name not in site_names()]
+    if unnamed:
+        warn([f"no site is given for {', '.join(unnamed)}; add --site '{unnamed[0]}=SITE'"])

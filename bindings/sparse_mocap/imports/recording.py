@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Recordings of others' programs, recognised by what they hold."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..take import SensorRecord, Take, read_take
+from . import phyphox, sensor_logger, ximu3, xsens_dot, xsens_mt_manager
+from .tables import RecordingError, Text, find_line, read_texts, shown
+
+Reader = Callable[[list[Text], list[str]], dict[str, SensorRecord] | None]
+
+
+@dataclass(frozen=True)
+class _Format:
+    name: str
+    read: Reader
+
+
+_FORMATS = tuple(
+    _Format(module.NAME, module.read)
+    for module in (xsens_mt_manager, xsens_dot, ximu3, phyphox, sensor_logger)
+)
+
+
+def recording_formats() -> list[str]:
+    """Returns the names of the formats that read_recording knows."""
+    return [*(known.name for known in _FORMATS), "take file"]
+
+
+def read_recording(path: str | os.PathLike[str], sites: Mapping[str, str] | None = None) -> Take:
+    """Returns the take in a recording: a file, a folder or a zip.
+
+    The format is recognised by its content. Sensors keep their own names but for those that
+    ``sites`` gives a site to. Times begin at 0. What was converted or restored is in the take's
+    comments. Raises RecordingError and OSError.
+    """
+    if not os.path.exists(path):
+        raise FileNotFoundError(2, "No such file or directory", os.fspath(path))
+    texts = read_texts(path)
+    if len(texts) == 1 and find_line(texts[0], "time_s", "sensor", "ax") is not None:
+        take = read_take(path)
+        return Take(_named(path, take.sensors, sites or {}), take.comments)
+    for known in _FORMATS:
+        notes: list[str] = []
+        records = known.read(texts, notes)
+        if records is not None:
+            origin = f"imported from {Path(path).name} ({known.name})"
+            named = _named(path, _from_zero(records), sites or {})
+            return Take(named, (origin, *dict.fromkeys(notes)))
+    raise RecordingError(
+        path, 0, f"is no recording that is known ({_seen(texts)}); known are "
+        + ", ".join(recording_formats())
+    )  # fmt: skip
+
+
+def _from_zero(records: dict[str, SensorRecord]) -> dict[str, SensorRecord]:
+    begin = min(float(record.times_s[0]) for record in records.values())
+    return {
+        name: SensorRecord(
+            np.asarray(record.times_s - begin),
+            record.specific_force,
+            record.angular_velocity,
+            record.orientation,
+        )
+        for name, record in records.items()
+    }
+
+
+def _named(
+    path: str | os.PathLike[str], records: dict[str, SensorRecord], sites: Mapping[str, str]
+) -> dict[str, SensorRecord]:
+    unknown = [name for name in sites if name not in records]
+    if unknown:
+        raise RecordingError(
+            path, 0, f"has no sensor {unknown[0]!r}; it has {', '.join(map(repr, records))}"
+        )
+    named = {sites.get(name, name).replace(",", " "): record for name, record in records.items()}
+    if len(named) < len(records):
+        raise RecordingError(path, 0, "two of its sensors would have one name; give other sites")
+    return named
+
+
+def _seen(texts: list[Text]) -> str:
+    if not texts:
+        return "it holds no .csv, .txt or .json"
+    first = next((line for line in texts[0].lines if line.strip()), "")
+    return f"{len(texts)} text files, the first begins with {shown(first)}"

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sparse_mocap/streams/counters.hpp"
+#include "sparse_mocap/streams/sample.hpp"
+
+namespace sparse_mocap::streams {
+
+using Bytes = std::vector<std::uint8_t>;
+using ByteView = std::span<const std::uint8_t>;
+
+// Turns a device's bytes into samples, without input or output of its own.
+//
+// However the bytes are cut into pieces, samples and counters are the same. Memory is bounded,
+// whatever comes. What cannot be used is dropped and counted, never guessed.
+class StreamParser {
+ public:
+  StreamParser() = default;
+  StreamParser(const StreamParser&) = delete;
+  StreamParser& operator=(const StreamParser&) = delete;
+  virtual ~StreamParser() = default;
+
+  // Appends the samples that these bytes complete.
+  void feed(ByteView bytes, std::vector<Sample>& samples);
+
+  // The same for one datagram; sender tells devices apart that share a socket ("10.0.0.7:6969").
+  void feed_datagram(ByteView datagram, std::string_view sender, std::vector<Sample>& samples);
+
+  // The connection was opened anew: forgets what was begun and the device's clocks and
+  // configuration. Sensors keep their indices, counters go on.
+  void reset();
+
+  const Counters& counters() const { return counters_; }
+  // In the order in which the sensors were met. A name may change when the device tells its own.
+  const std::vector<std::string>& sensor_names() const { return sensor_names_; }
+  // What the device told last in words, such as an error; empty: nothing.
+  const std::string& last_message() const { return last_message_; }
+  // What the protocol wants answered; for datagrams, to the sender of the one just fed.
+  std::vector<Bytes> take_replies();
+
+ protected:
+  static constexpr std::size_t kMostSensors = 64;
+
+  virtual void parse(ByteView bytes) = 0;
+  virtual void parse_datagram(ByteView datagram, std::string_view sender);
+  virtual void restart() = 0;
+
+  // The index of a new sensor, -1 when there are too many (which is counted).
+  int add_sensor(std::string name);
+  void rename_sensor(int sensor, std::string name);
+  // Hands out a sample unless it is implausible.
+  void emit(const Sample& sample);
+  void tell(std::string_view message);
+  void reply(Bytes bytes);
+  std::uint64_t& count(Count what) { return counters_[what]; }
+  Counters& all_counts() { return counters_; }
+
+ private:
+  Counters counters_;
+  std::vector<std::string> sensor_names_;
+  std::string last_message_;
+  std::vector<Bytes> replies_;
+  std::vector<Sample>* samples_ = nullptr;
+};
+
+// The other direction: what a device would send. For emulators and tests.
+class StreamEncoder {
+ public:
+  StreamEncoder() = default;
+  StreamEncoder(const StreamEncoder&) = delete;
+  StreamEncoder& operator=(const StreamEncoder&) = delete;
+  virtual ~StreamEncoder() = default;
+
+  // What a device sends of its own accord when it starts.
+  virtual std::vector<Bytes> hello() { return {}; }
+  // The samples of one instant, at most one a sensor, as packets (datagrams, or to be joined).
+  // Absent values are sent as zeros and the rotation that does nothing.
+  virtual std::vector<Bytes> encode(std::span<const Sample> samples) = 0;
+  // What the device answers to what a host sends it.
+  virtual Bytes respond(ByteView) { return {}; }
+};
+
+}  // namespace sparse_mocap::streams

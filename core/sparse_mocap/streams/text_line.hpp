@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "sparse_mocap/streams/framing.hpp"
+#include "sparse_mocap/streams/options.hpp"
+#include "sparse_mocap/streams/unwrap.hpp"
+
+namespace sparse_mocap::streams::text_line {
+
+// What a column of a line may hold.
+enum class Column {
+  time,
+  sensor,
+  counter,
+  ax,
+  ay,
+  az,
+  gx,
+  gy,
+  gz,
+  mx,
+  my,
+  mz,
+  qw,
+  qx,
+  qy,
+  qz,
+  skip
+};
+
+// How a device spells its lines and in which units; throws ConfigError for what cannot be.
+struct Profile {
+  explicit Profile(const Options& options);
+
+  char separator = ',';
+  std::string prefix;
+  std::vector<Column> columns;  // empty: the device sends a line that names them
+  double force_scale = 1.0;     // to m/s^2
+  double turn_scale = 1.0;      // to rad/s
+  double time_tick_s = 1.0;
+  double wraps_after = 0.0;  // 2^32 for counters of micro- and milliseconds, else 0: never
+  bool is_gravity_included = true;
+  std::string name;
+};
+
+// One sample a line of text, as Arduino and ESP32 sketches print them. A line that is not exactly
+// as the profile says is dropped: text at start-up, half lines, a repeated header, nan and ovf.
+class Parser : public StreamParser {
+ public:
+  explicit Parser(const Options& options);
+
+  static std::vector<OptionSpec> options();
+  static std::vector<Bytes> start_commands(const Options& options);
+  static std::unique_ptr<StreamEncoder> make_encoder(const Options& options,
+                                                     const std::vector<std::string>& sensors);
+
+ private:
+  struct Device {
+    int sensor = 0;
+    PacketCounter counter{63};
+    double last_time = kAbsent;  // as the device counts
+    double last_step = 1.0;
+    double time = kAbsent;
+    unsigned next_flags = 0;
+  };
+
+  void parse(ByteView bytes) override;
+  void restart() override;
+  void take(std::string_view line);
+  void take_header(const std::vector<std::string_view>& fields);
+  bool take_time(double value, Device& device, Sample& sample);
+  bool take_counter(double value, Device& device, Sample& sample);
+  Device* device_of(std::string_view name);
+
+  Profile profile_;
+  std::vector<Column> columns_;
+  bool is_first_line_;
+  bool skips_first_line_;
+  LineSplitter lines_;
+  std::map<std::string, Device, std::less<>> devices_;
+};
+
+}  // namespace sparse_mocap::streams::text_line

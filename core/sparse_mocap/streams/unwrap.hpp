@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+namespace sparse_mocap::streams {
+
+// A device's packet counter of a few bits, as a count that goes on.
+class PacketCounter {
+ public:
+  struct Step {
+    std::int64_t counter = 0;
+    std::int64_t missing = 0;  // how many packets were lost before this one
+    bool is_repeated = false;
+    bool is_backwards = false;  // the count began anew; the next step is from here
+  };
+
+  explicit PacketCounter(int bits) : bits_(bits) {}
+
+  Step take(std::uint64_t raw);
+
+ private:
+  int bits_;
+  bool is_started_ = false;
+  std::uint64_t last_raw_ = 0;
+  std::int64_t counter_ = 0;
+};
+
+// A device's clock of a few bits, as a time that ascends.
+class TickClock {
+ public:
+  struct Step {
+    double time_s = 0.0;
+    bool is_repeated = false;
+    bool is_restarted = false;  // it went back; the time goes on with the last step's length
+  };
+
+  TickClock(int bits, double tick_s) : bits_(bits), tick_s_(tick_s) {}
+
+  Step take(std::uint64_t raw);
+
+ private:
+  int bits_;
+  double tick_s_;
+  bool is_started_ = false;
+  std::uint64_t last_raw_ = 0;
+  std::int64_t last_step_ = 1;
+  std::int64_t ticks_ = 0;
+};
+
+}  // namespace sparse_mocap::streams
