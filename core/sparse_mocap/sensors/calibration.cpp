@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTemplateHeight_m = 1.75;
 constexpr double kLargestPlaceDeviation = 0.08;
-constexpr double kSmallestExplained = 0.5;
+constexpr double kSmallestExplained = 0.7;
 constexpr double kBeyondBone = 0.15;  // how far off the bone a place may come out
 
 std::string number(const char* format, double value) {

@@ -36,6 +36,38 @@ double slope_at(const std::vector<Point>& hull, double x) {
   return slope_between(hull[i - 1], hull[i]);
 }
 
+// The height at x of the highest line of this slope that is below the hull.
+double height_below(const std::vector<Point>& hull, double slope, double x) {
+  double height = std::numeric_limits<double>::infinity();
+  for (const Point& p : hull) height = std::min(height, p.y + slope * (x - p.x));
+  return height;
+}
+
+// The mean of all slopes that the points allow, each as likely as exponential lateness makes it.
+// The likeliest slope rests on two points alone; the mean is half as far off when few are prompt.
+double mean_slope(const std::vector<Point>& points, const std::vector<Point>& hull, double centre,
+                  double likeliest, double limit) {
+  const double intercept = height_below(hull, likeliest, 0.0);
+  std::vector<double> lateness;
+  for (const Point& p : points) lateness.push_back(p.y - intercept - likeliest * p.x);
+  // How far apart the promptest arrivals are: only these touch a line.
+  const auto tenth = lateness.begin() + static_cast<std::ptrdiff_t>(lateness.size() / 10);
+  std::nth_element(lateness.begin(), tenth, lateness.end());
+  const double unit = std::max(*tenth / (1.0 + static_cast<double>(lateness.size() / 10)), 1e-9);
+  const double reach = 40.0 * unit / (points.back().x - points.front().x);
+  const double top = height_below(hull, likeliest, centre);
+  double weights = 0.0, sum = 0.0;
+  constexpr int kSteps = 200;
+  for (int step = -kSteps; step <= kSteps; ++step) {
+    const double slope = likeliest + reach * step / kSteps;
+    if (std::abs(slope) > limit) continue;
+    const double weight = std::exp((height_below(hull, slope, centre) - top) / unit);
+    weights += weight;
+    sum += weight * slope;
+  }
+  return weights > 0.0 ? sum / weights : likeliest;
+}
+
 }  // namespace
 
 CounterUnwrapper::CounterUnwrapper(int bits) : bits_(bits) {
@@ -126,12 +158,13 @@ void ClockModel::fit() {
     points.push_back({bucket.device_s, bucket.arrival_s - bucket.device_s});
     centre_s += bucket.device_s / static_cast<double>(buckets_.size());
   }
-  // Where the hull is too steep, the line of the steepest slope allowed touches it elsewhere.
-  drift_ = buckets_.size() < 2 ? drift_
-                               : std::clamp(slope_at(lower_hull(points), centre_s),
-                                            -settings_.largest_drift, settings_.largest_drift);
-  intercept_s_ = std::numeric_limits<double>::infinity();
-  for (const Point& p : points) intercept_s_ = std::min(intercept_s_, p.y - drift_ * p.x);
+  const std::vector<Point> hull = lower_hull(points);
+  const double limit = settings_.largest_drift;
+  if (points.size() >= 2) {
+    const double likeliest = std::clamp(slope_at(hull, centre_s), -limit, limit);
+    drift_ = mean_slope(points, hull, centre_s, likeliest, limit);
+  }
+  intercept_s_ = height_below(hull, drift_, 0.0);
 }
 
 double ClockModel::host_time_s(double device_s) const {
