@@ -18,7 +18,7 @@ class AlignmentError(ConfigError):
 def aligned(
     take: Take, span: tuple[float, float] | None = None, largest_lag_s: float = 1.0
 ) -> tuple[Take, dict[str, float]]:
-    """Returns the take with its sensors' times moved onto those of its first sensor, and by how much.
+    """Returns the take on the clock of its first sensor, and by how much each sensor was late.
 
     The strongest event that both see (a clap, a jump; in the span if one is given) is found by
     itself. Raises AlignmentError for a sensor that saw nothing in common with the first, or for

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ._core import (
     ConfigError,
+    Skeleton,
     calibrate_sensor,
     guided_movements,
     site_names,
@@ -112,12 +113,14 @@ def calibrate(
     *,
     sites: Mapping[str, str] | None = None,
     height_m: float = 1.75,
+    body: Skeleton | None = None,
     places: Mapping[str, float] | None = None,
 ) -> Calibration:
     """Returns the calibration of every sensor in the take.
 
     ``sites`` says where sensors are worn that the take names otherwise; ``height_m`` is the
-    wearer's, and scales the bones that places refer to; ``places`` are by site and measured, so
+    wearer's, and scales the bones that places refer to, unless ``body`` is a standard skeleton
+    that has them; ``places`` are by site and measured, so
     they win over what the movements show. Raises CalibrationError naming the sensor, what it
     read and what to do; ConfigError for names that are not known.
     """
@@ -128,7 +131,7 @@ def calibrate(
         moves = [(move, _cut(name, record, span, move)) for move, span in steps.movements]
         place = (places or {}).get(worn[name])
         try:
-            told = calibrate_sensor(worn[name], steps.pose, stand, moves, height_m, place)
+            told = calibrate_sensor(worn[name], steps.pose, stand, moves, height_m, place, body)
         except ConfigError as error:
             raise CalibrationError(f"{name}: {error}") from None
         found[name] = _known_place(worn[name], told, place)

@@ -53,11 +53,16 @@ py::dict told(const SensorCalibration& calibration) {
 
 py::dict calibrate(const std::string& site, const std::string& pose, const BoundRecording& standing,
                    const std::vector<std::pair<std::string, BoundRecording>>& movements,
-                   double height_m, std::optional<double> default_place) {
+                   double height_m, std::optional<double> default_place,
+                   const std::optional<Skeleton>& body) {
   std::vector<RecordedMovement> recorded;
   for (const auto& [name, recording] : movements)
     recorded.push_back({&find_guided_movement(name), recording_from(recording)});
-  const CalibrationSettings settings{find_standing_pose(pose), height_m, default_place};
+  CalibrationSettings settings;
+  settings.pose = find_standing_pose(pose);
+  settings.height_m = height_m;
+  settings.default_place = default_place;
+  if (body) settings.bones = bones_of(*body);
   return told(calibrate_sensor(all_sites()[static_cast<std::size_t>(find_site(site))],
                                recording_from(standing), recorded, settings));
 }
@@ -79,7 +84,8 @@ void bind_calibration(py::module_& m) {
     return out;
   });
   m.def("calibrate_sensor", &calibrate, py::arg("site"), py::arg("pose"), py::arg("standing"),
-        py::arg("movements"), py::arg("height_m"), py::arg("default_place"));
+        py::arg("movements"), py::arg("height_m"), py::arg("default_place"),
+        py::arg("body") = py::none());
 }
 
 }  // namespace sparse_mocap::python

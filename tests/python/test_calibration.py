@@ -121,6 +121,17 @@ def test_mounting_scale_and_place_are_recovered(turned_deg: float, noise: float,
     assert found.notes == []
 
 
+def test_places_refer_to_the_wearer_s_own_bones() -> None:
+    """A body whose bones are a fifth longer brings every place nearer to the still point."""
+    wearer = Wearer(10.0, 0.0, 2)
+    tall = calibrate(wearer.take, STEPS, height_m=1.2 * 1.75)
+    for site in ("left_wrist", "right_wrist"):
+        assert tall.sensors[site].place == pytest.approx(wearer.places[site] / 1.2, abs=0.05)
+    for site in ("left_ankle", "right_ankle"):
+        expected = 1 - (1 - wearer.places[site]) / 1.2
+        assert tall.sensors[site].place == pytest.approx(expected, abs=0.05)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_accelerations_alone_give_the_mounting_and_say_so_of_the_place(seed: int) -> None:
     wearer = Wearer(25.0, 0.15, seed)

@@ -54,6 +54,12 @@ SensorRecording in_site_axes(SensorRecording recording, const Mat3& R_site_senso
   return recording;
 }
 
+double bone_length_m(const Site& site, const CalibrationSettings& settings) {
+  const auto carrier = static_cast<std::size_t>(site.carrier);
+  if (settings.bones) return (*settings.bones)[carrier].norm();
+  return template_bones()[carrier].norm() * settings.height_m / kTemplateHeight_m;
+}
+
 // The place that the most certain movement shows.
 void find_place(std::span<const ObservedTurn> turns, const Vec3& gyroscope_bias, double bone_m,
                 SensorCalibration& out) {
@@ -122,9 +128,8 @@ SensorCalibration calibrate_sensor(const Site& site, const SensorRecording& stan
   out.axis_ratio = mounting.axis_ratio;
   out.gyroscope_bias = gravity.gyroscope_bias;
   out.place = settings.default_place.value_or(typical_place(site));
-  const double bone_m = template_bones()[static_cast<std::size_t>(site.carrier)].norm() *
-                        settings.height_m / kTemplateHeight_m;
-  if (mounting.is_determined) find_place(turns, gravity.gyroscope_bias, bone_m, out);
+  if (mounting.is_determined)
+    find_place(turns, gravity.gyroscope_bias, bone_length_m(site, settings), out);
   note_what_is_missing(turns, mounting, out, out.notes);
   const double still = std::exp(-gravity.unrest_mps2 / 0.5);
   const double mounted = mounting.is_determined ? 1.0 - 1.0 / mounting.axis_ratio : 0.0;

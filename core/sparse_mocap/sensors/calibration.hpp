@@ -40,7 +40,8 @@ double typical_place(const Site& site);
 
 struct CalibrationSettings {
   StandingPose pose = StandingPose::arms_down;
-  double height_m = 1.75;  // of the performer: scales the bones that places refer to
+  double height_m = 1.75;              // of the performer: scales the bones of a medium body
+  std::optional<StandardBones> bones;  // the performer's own, where they are known
   // Where the movements do not determine it; none: typical_place.
   std::optional<double> default_place;
 };
