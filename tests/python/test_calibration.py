@@ -132,6 +132,18 @@ def test_places_refer_to_the_wearer_s_own_bones() -> None:
         assert tall.sensors[site].place == pytest.approx(expected, abs=0.05)
 
 
+def test_the_point_that_stayed_still_is_found_whatever_was_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Knees bent backwards instead of a squat, straight arms raised instead of elbows bent."""
+    monkeypatch.setitem(STILL, "ankle", 0.0)
+    monkeypatch.setitem(STILL, "wrist", -0.28 / BONES["wrist"])
+    wearer = Wearer(20.0, 0.0, 7)
+    for site, sensor in calibrate(wearer.take, STEPS).sensors.items():
+        assert sensor.is_place_determined
+        assert sensor.place == pytest.approx(wearer.places[site], abs=0.1)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_accelerations_alone_give_the_mounting_and_say_so_of_the_place(seed: int) -> None:
     wearer = Wearer(25.0, 0.15, seed)

@@ -60,6 +60,21 @@ double bone_length_m(const Site& site, const CalibrationSettings& settings) {
   return template_bones()[carrier].norm() * settings.height_m / kTemplateHeight_m;
 }
 
+bool is_on_bone(double place) { return place >= -kBeyondBone && place <= 1.0 + kBeyondBone; }
+
+// Who was asked to squat may have bent the knees backwards: the point that stayed still is then
+// another one that movements of this site leave still, the only one that puts the sensor on its
+// bone.
+double place_on_bone(const GuidedTurn& turn, double lever) {
+  if (is_on_bone(*turn.still_place + lever)) return *turn.still_place + lever;
+  for (const auto& movement : guided_movements()) {
+    const GuidedTurn* other = turn_of(movement, turn.site);
+    if (other != nullptr && other->still_place && is_on_bone(*other->still_place + lever))
+      return *other->still_place + lever;
+  }
+  return *turn.still_place + lever;
+}
+
 // The place that the most certain movement shows.
 void find_place(std::span<const ObservedTurn> turns, const Vec3& gyroscope_bias, double bone_m,
                 SensorCalibration& out) {
@@ -67,10 +82,9 @@ void find_place(std::span<const ObservedTurn> turns, const Vec3& gyroscope_bias,
     if (!observed.turn.still_place || !observed.recording.has_gyroscope()) continue;
     const Lever lever =
         lever_from(in_site_axes(observed.recording, out.R_site_sensor, gyroscope_bias));
-    const double place = *observed.turn.still_place + lever.along_m / bone_m;
+    const double place = place_on_bone(observed.turn, lever.along_m / bone_m);
     const double deviation = lever.deviation_m / bone_m;
-    if (lever.explained < kSmallestExplained || place < -kBeyondBone || place > 1.0 + kBeyondBone)
-      continue;
+    if (lever.explained < kSmallestExplained || !is_on_bone(place)) continue;
     if (deviation >= out.place_deviation) continue;
     out.place_deviation = deviation;
     if (deviation > kLargestPlaceDeviation) continue;

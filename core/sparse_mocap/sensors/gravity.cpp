@@ -59,15 +59,15 @@ StandingGravity standing_gravity(const SensorRecording& standing) {
       standing.specific_force.middleCols(stretch.begin, stretch.size).rowwise().mean();
   StandingGravity gravity;
   gravity.magnitude = mean.norm();
+  if (stretch.unrest > kLargestUnrest * gravity.magnitude)
+    refuse("it is not still while the wearer stands: its readings vary by ",
+           stretch.unrest / gravity.magnitude * kGravity_mps2, " m/s^2; stand still for 2 s");
   gravity.is_in_g = std::abs(gravity.magnitude - 1.0) <= kLargestGravityError;
   const double expected = gravity.is_in_g ? 1.0 : kGravity_mps2;
   if (std::abs(gravity.magnitude - expected) > kLargestGravityError * expected)
     refuse("at rest it reads ", gravity.magnitude,
            ", which is neither 9.81 m/s^2 nor 1 g within 15 %; check its range, its unit, and that "
            "gravity is included");
-  if (stretch.unrest > kLargestUnrest * gravity.magnitude)
-    refuse("it is not still while the wearer stands: its readings vary by ",
-           stretch.unrest / gravity.magnitude * kGravity_mps2, " m/s^2; stand still for 2 s");
   gravity.scale = kGravity_mps2 / gravity.magnitude;
   gravity.up = mean.normalized();
   gravity.unrest_mps2 = stretch.unrest * gravity.scale;
