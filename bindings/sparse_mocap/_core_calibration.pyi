@@ -6,7 +6,8 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ._core_motion import Floats, Skeleton
+from ._core_motion import Skeleton
+from ._core_types import Floats
 
 class CounterUnwrapper:
     """Unwraps a counter of a few bits."""

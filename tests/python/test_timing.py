@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
-from sparse_mocap import Resampler, SensorRecord, Take, resampled
+from click.testing import Result
+from sparse_mocap import Resampler, SensorRecord, Take, read_motion, resampled, write_take
 from sparse_mocap.alignment import AlignmentError, aligned
 
 
@@ -70,3 +73,21 @@ def test_sensors_without_a_common_event_are_refused_by_name() -> None:
         aligned(take)
     with pytest.raises(AlignmentError, match="overlap by too little"):
         aligned(take, (3.0, 4.0))
+
+
+def test_reconstruct_brings_sensors_onto_one_clock_by_a_clap(
+    cli: Callable[..., Result], database_path: Path, tmp_path: Path
+) -> None:
+    paths = []
+    for name, lag_s in (("own", 0.2), ("common", 0.0)):
+        sensors = {"left_wrist": record(100.0, 0.0, 1), "right_wrist": record(100.0, 0.0, 1)}
+        late = sensors["right_wrist"]
+        sensors["right_wrist"] = replace(late, times_s=late.times_s + lag_s)
+        write_take(tmp_path / f"{name}.csv", Take(sensors))
+        result = cli("reconstruct", "--database", database_path, tmp_path / f"{name}.csv",
+                     "-o", tmp_path / f"{name}.bvh", "--clap", "1:9")  # fmt: skip
+        assert result.exit_code == 0, result.output
+        paths.append(tmp_path / f"{name}.bvh")
+    own, common = (read_motion(path)[0].joint_positions("world") for path in paths)
+    assert own.shape == common.shape
+    assert np.linalg.norm(own - common, axis=2).mean() < 0.02
