@@ -12,6 +12,8 @@ PYBIND11_MODULE(_core, m) {
   python::bind_humanoid(m);
   python::bind_sensors(m);
   python::bind_streams(m);
+  python::bind_calibration(m);
+  python::bind_timing(m);
   python::bind_database(m);
   python::bind_database_import(m);
   python::bind_reconstruction(m);

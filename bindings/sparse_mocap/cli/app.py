@@ -13,6 +13,7 @@ import click
 from .faults import Fault, as_faults
 
 _COMMANDS = {
+    "calibrate": ".calibrate:calibrate_command",
     "convert": ".convert:convert",
     "database": ".database:database",
     "evaluate": ".evaluate:evaluate",

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -59,6 +60,27 @@ class Place(click.ParamType):  # type: ignore[type-arg]
         if not 0.0 <= place <= 1.0:
             self.fail(f"{text!r} is no place from 0 (nearer the body) to 1", param, ctx)
         return site, place
+
+
+class Span(click.ParamType):  # type: ignore[type-arg]
+    """A stretch of a take."""
+
+    name = "FROM:TO"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, float]:
+        """Returns from and to in seconds."""
+        if isinstance(value, tuple):
+            return value
+        begin_text, _, end_text = str(value).partition(":")
+        try:
+            begin_s, end_s = float(begin_text), float(end_text)
+        except ValueError:
+            begin_s, end_s = 0.0, 0.0
+        if not (begin_s < end_s and isfinite(begin_s) and isfinite(end_s)):
+            self.fail(f"{value!r} is no FROM:TO in seconds, as in 2.5:10", param, ctx)
+        return begin_s, end_s
 
 
 place_option: Decorator = click.option(

@@ -18,6 +18,10 @@ from .. import (
     write_bvh,
     write_positions,
 )
+from ..alignment import aligned
+from ..calibration import apply
+from ..calibration import places_of as calibrated_places
+from ..calibration_file import read_calibration
 from ..reconstruction import (
     is_unlike_the_database,
     latency_ms,
@@ -25,9 +29,11 @@ from ..reconstruction import (
     report,
     suspicions,
 )
+from ..take import Take
 from .console import progress_bar, warn, write_json
 from .options import (
     FilePath,
+    Span,
     check_ending,
     check_presets,
     frame_option,
@@ -50,6 +56,12 @@ from .options import (
 @frame_option
 @click.option("--json", "json_path", type=FilePath, help="Also writes a report on every frame.")
 @place_option
+@click.option(
+    "--calibration", "calibration_path", type=FilePath, help="The sensors' calibration (.json)."
+)
+@click.option(
+    "--clap", type=Span(), help="When all sensors saw one clap or jump: brings them onto one clock."
+)
 def reconstruct(
     take: Path,
     database_path: Path,
@@ -61,6 +73,8 @@ def reconstruct(
     frame: str,
     json_path: Path | None,
     places: tuple[tuple[str, float], ...],
+    calibration_path: Path | None,
+    clap: tuple[float, float] | None,
 ) -> None:
     """Turns a take into a motion.
 
@@ -68,10 +82,10 @@ def reconstruct(
     """
     check_ending(output, ".bvh")
     check_presets(method, [preset])
-    recorded = read_take(take)
+    recorded, known_places = _made_ideal(read_take(take), calibration_path, clap)
     database = MotionDatabase(database_path)
     times, readings = resampled(recorded, database.rate_hz)
-    where = places_of(recorded.sites, places)
+    where = places_of(recorded.sites, (*known_places, *places))
     reconstructor = Reconstructor(
         database, recorded.sites, method=method, preset=preset, places=where
     )
@@ -91,6 +105,20 @@ def reconstruct(
         write_json(json_path, about | told)
     warn(suspicions(recorded))
     _tell(output, solved, readings, late)
+
+
+def _made_ideal(
+    take: Take, calibration_path: Path | None, clap: tuple[float, float] | None
+) -> tuple[Take, list[tuple[str, float]]]:
+    """Returns the take on one clock and calibrated, and the places that its calibration knows."""
+    if clap is not None:
+        take, _ = aligned(take, clap)
+    if calibration_path is None:
+        return take, []
+    known = read_calibration(calibration_path)
+    found = calibrated_places(known, take)
+    take = apply(known, take)
+    return take, list(zip(take.sites, found, strict=True))
 
 
 def _tell(

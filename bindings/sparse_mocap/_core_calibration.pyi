@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The compiled core: clocks, time lags, live resampling, calibration."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from ._core_motion import Skeleton
+from ._core_types import Floats
+
+class CounterUnwrapper:
+    """Unwraps a counter of a few bits."""
+
+    def __init__(self, bits: int) -> None: ...
+    def unwrap(self, raw: int, expected_advance: int = 0) -> int:
+        """The value nearest to the last one plus expected_advance that has these low bits."""
+
+class ClockModel:
+    """Maps a device's clock to the host's; arrivals are only ever late."""
+
+    def __init__(self, *, largest_drift_ppm: float = 500.0, window_s: float = 600.0) -> None: ...
+    def observe(self, device_s: float, arrival_s: float) -> float:
+        """Takes a sample's device and arrival times; gives its host time, never going back."""
+    def host_time_s(self, device_s: float) -> float:
+        """By all that is known now."""
+    @property
+    def offset_s(self) -> float: ...
+    @property
+    def drift_ppm(self) -> float: ...
+    @property
+    def mean_lateness_s(self) -> float: ...
+    @property
+    def num_segments(self) -> int:
+        """1 + how often the device's clock was set anew."""
+
+class Resampler:
+    """Live sensors on a database's time line, through the database's low-pass."""
+
+    def __init__(self, num_sensors: int, rate_hz: float) -> None: ...
+    def push(self, sensor: int, time_s: float, specific_force: ArrayLike) -> bool:
+        """Takes a sample; False when it is dropped, being no later than the sensor's last."""
+    def frames_until(self, now_s: float) -> list[tuple[float, Floats]]:
+        """The frames that are ready: time and readings (S, 3), NaN where a sensor is silent."""
+    def flush(self) -> list[tuple[float, Floats]]:
+        """The frames still owed when the performance has ended."""
+    @property
+    def delay_s(self) -> float:
+        """How long after its time a frame is ready."""
+
+def align_in_time(
+    first_times_s: ArrayLike,
+    first: ArrayLike,
+    second_times_s: ArrayLike,
+    second: ArrayLike,
+    *,
+    largest_lag_s: float = 1.0,
+    window_s: float = 1.5,
+) -> dict[str, Any]:
+    """The lag of the second signal: lag_s, correlation, runner_up, event_s, is_found."""
+
+def standing_pose_names() -> list[str]: ...
+def guided_movements() -> dict[str, tuple[str, list[str]]]:
+    """Each movement's instruction and the sites that it calibrates."""
+
+def calibrate_sensor(
+    site: str,
+    pose: str,
+    standing: tuple[Floats, Floats, Floats | None],
+    movements: Sequence[tuple[str, tuple[Floats, Floats, Floats | None]]],
+    height_m: float,
+    default_place: float | None,
+    body: Skeleton | None = None,
+) -> dict[str, Any]:
+    """One sensor's calibration; recordings are times_s, specific_force, angular_velocity."""

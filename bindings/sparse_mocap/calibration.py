@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Calibration: how each sensor is scaled, turned on its limb, and placed along its bone.
+
+The wearer stands still, then makes guided movements (guided_movements() names them); the spans of
+a take in which they do so are the steps. The result is kept in a file and holds until the sensors
+are strapped on anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._core import (
+    ConfigError,
+    Skeleton,
+    calibrate_sensor,
+    guided_movements,
+    site_names,
+    standing_pose_names,
+)
+from .take import SensorRecord, Take
+
+Floats = NDArray[np.float64]
+Span = tuple[float, float]
+"""From and to, in the take's seconds."""
+
+__all__ = [
+    "Calibration",
+    "CalibrationError",
+    "SensorCalibration",
+    "Steps",
+    "apply",
+    "assign_by_shaking",
+    "calibrate",
+    "guided_movements",
+    "places_of",
+    "standing_pose_names",
+]
+
+_CLEARLY = 2.0  # how much more the shaken sensor must move than any other
+_LEAST_SHAKING_MPS2 = 3.0
+
+
+class CalibrationError(ConfigError):
+    """A take does not calibrate its sensors; str() is one line."""
+
+
+@dataclass(frozen=True)
+class SensorCalibration:
+    """What turns one sensor's readings into those of an ideal sensor at its site."""
+
+    site: str
+    scale: float
+    """Readings times this are m/s^2."""
+    R_site_sensor: Floats
+    """(3, 3), applied after the scale."""
+    place: float
+    """Along the site's bone, 0 at its pivot (elbow, knee), 1 at its end (wrist, ankle)."""
+    gyroscope_bias: Floats
+    """(3,) rad/s, in the sensor's own axes."""
+    quality: float
+    """0, nothing is sure, to 1."""
+    is_mounting_determined: bool
+    is_place_determined: bool
+    gravity: float
+    """What it read at rest, in its own unit."""
+    unrest_mps2: float
+    """How far its readings strayed while the wearer stood."""
+    axis_ratio: float
+    """How clearly the movements show one axis; 1 is not at all."""
+    place_deviation: float
+    """Standard deviation of the place."""
+    notes: tuple[str, ...] = ()
+    """What could not be determined, why, and what was taken instead."""
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """The calibrations of a take's sensors, by the names that the take gives them."""
+
+    sensors: dict[str, SensorCalibration]
+
+    @property
+    def quality(self) -> float:
+        """That of the worst sensor."""
+        return min(sensor.quality for sensor in self.sensors.values())
+
+    @property
+    def notes(self) -> list[str]:
+        """The sensors' notes, each after its sensor's name."""
+        return [f"{name}: {note}" for name, s in self.sensors.items() for note in s.notes]
+
+
+@dataclass(frozen=True)
+class Steps:
+    """When in a take the wearer did what."""
+
+    stand: Span
+    movements: tuple[tuple[str, Span], ...] = ()
+    """Guided movements by name; one may be made more than once."""
+    pose: str = "arms_down"
+    """How the wearer stood, one of standing_pose_names()."""
+
+
+def calibrate(
+    take: Take,
+    steps: Steps,
+    *,
+    sites: Mapping[str, str] | None = None,
+    height_m: float = 1.75,
+    body: Skeleton | None = None,
+    places: Mapping[str, float] | None = None,
+) -> Calibration:
+    """Returns the calibration of every sensor in the take.
+
+    ``sites`` says where sensors are worn that the take names otherwise; ``height_m`` is the
+    wearer's, and scales the bones that places refer to, unless ``body`` is a standard skeleton
+    that has them; ``places`` are by site and measured, so
+    they win over what the movements show. Raises CalibrationError naming the sensor, what it
+    read and what to do; ConfigError for names that are not known.
+    """
+    worn = _worn_at(take, sites or {})
+    found = {}
+    for name, record in take.sensors.items():
+        stand = _cut(name, record, steps.stand, "the standing pose")
+        moves = [(move, _cut(name, record, span, move)) for move, span in steps.movements]
+        place = (places or {}).get(worn[name])
+        try:
+            told = calibrate_sensor(worn[name], steps.pose, stand, moves, height_m, place, body)
+        except ConfigError as error:
+            raise CalibrationError(f"{name}: {error}") from None
+        found[name] = _known_place(worn[name], told, place)
+    return Calibration(found)
+
+
+def apply(calibration: Calibration, take: Take) -> Take:
+    """Returns what ideal sensors would have read: scaled, turned, named by their sites.
+
+    Their places are places_of(). Raises CalibrationError when a sensor has no calibration.
+    """
+    sensors = {}
+    for name, record in take.sensors.items():
+        known = _of(calibration, name)
+        R = known.R_site_sensor
+        turn, orientation = record.angular_velocity, record.orientation
+        sensors[known.site] = SensorRecord(
+            record.times_s,
+            known.scale * record.specific_force @ R.T,
+            None if turn is None else (turn - known.gyroscope_bias) @ R.T,
+            None if orientation is None else _turned(orientation, R.T),
+        )
+    return Take(sensors, take.comments)
+
+
+def places_of(calibration: Calibration, take: Take) -> list[float]:
+    """Returns the place of each of the take's sensors, in its order."""
+    return [_of(calibration, name).place for name in take.sensors]
+
+
+def assign_by_shaking(take: Take, span: Span) -> str:
+    """Returns the name of the sensor that was shaken in the span while the others rested.
+
+    Raises CalibrationError when none stands out.
+    """
+    moved = {}
+    for name, record in take.sensors.items():
+        _, force, _ = _cut(name, record, span, "the shaking")
+        moved[name] = float(np.sqrt(np.var(force, axis=0).sum()))
+    order = sorted(moved, key=lambda name: -moved[name])
+    first = order[0]
+    if moved[first] < _LEAST_SHAKING_MPS2:
+        raise CalibrationError(
+            f"no sensor was shaken from {span[0]:g} to {span[1]:g} s: the liveliest, {first}, "
+            f"varies by {moved[first]:.1f} m/s^2; shake it harder"
+        )
+    if len(order) > 1 and moved[first] < _CLEARLY * moved[order[1]]:
+        raise CalibrationError(
+            f"from {span[0]:g} to {span[1]:g} s both {first} ({moved[first]:.1f} m/s^2) and "
+            f"{order[1]} ({moved[order[1]]:.1f}) moved; shake one and keep the others still"
+        )
+    return first
+
+
+def _worn_at(take: Take, sites: Mapping[str, str]) -> dict[str, str]:
+    for name in sites:
+        if name not in take.sensors:
+            known = ", ".join(take.sensors)
+            raise CalibrationError(f"the take has no sensor {name!r}; it has {known}")
+    worn = {name: sites.get(name, name) for name in take.sensors}
+    for name, site in worn.items():
+        if site not in site_names():
+            raise CalibrationError(
+                f"{name}: {site!r} is no site; known are {', '.join(site_names())}"
+            )
+        twins = [other for other, at in worn.items() if at == site]
+        if len(twins) > 1:
+            raise CalibrationError(f"{' and '.join(twins)} are both worn at {site}; name others")
+    return worn
+
+
+def _cut(
+    name: str, record: SensorRecord, span: Span, what: str
+) -> tuple[Floats, Floats, Floats | None]:
+    begin, end = np.searchsorted(record.times_s, span)
+    if end - begin < 10:
+        raise CalibrationError(
+            f"{name}: {what} from {span[0]:g} to {span[1]:g} s holds {end - begin} samples; the "
+            f"sensor's record is from {record.times_s[0]:g} to {record.times_s[-1]:g} s"
+        )
+    turn = record.angular_velocity
+    return (
+        record.times_s[begin:end],
+        record.specific_force[begin:end],
+        None if turn is None else turn[begin:end],
+    )
+
+
+def _known_place(site: str, told: dict[str, Any], place: float | None) -> SensorCalibration:
+    found = SensorCalibration(site=site, **{**told, "notes": tuple(told["notes"])})
+    if place is None:
+        return found
+    notes = tuple(note for note in found.notes if "place along" not in note)
+    return replace(found, place=place, is_place_determined=True, place_deviation=0.0, notes=notes)
+
+
+def _of(calibration: Calibration, name: str) -> SensorCalibration:
+    if name not in calibration.sensors:
+        known: Sequence[str] = list(calibration.sensors)
+        raise CalibrationError(
+            f"the calibration has no sensor {name!r}; it has {', '.join(known)}: calibrate again"
+        )
+    return calibration.sensors[name]
+
+
+def _turned(quaternions: Floats, R: Floats) -> Floats:
+    """Returns q * R for unit quaternions (T, 4), w x y z."""
+    w, x, y, z = np.moveaxis(quaternions, 1, 0)
+    world = np.empty((len(quaternions), 3, 3))
+    world[:, 0] = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)], 1)
+    world[:, 1] = np.stack([2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)], 1)
+    world[:, 2] = np.stack([2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)], 1)
+    return _quaternions(world @ R)
+
+
+def _quaternions(rotations: Floats) -> Floats:
+    # 4 q q^T, row by row; the row with the largest diagonal is the best conditioned.
+    m = rotations
+    xx, yy, zz = m[:, 0, 0], m[:, 1, 1], m[:, 2, 2]
+    wx, wy, wz = m[:, 2, 1] - m[:, 1, 2], m[:, 0, 2] - m[:, 2, 0], m[:, 1, 0] - m[:, 0, 1]
+    xy, xz, yz = m[:, 0, 1] + m[:, 1, 0], m[:, 0, 2] + m[:, 2, 0], m[:, 1, 2] + m[:, 2, 1]
+    outer = np.stack(
+        [
+            np.stack([1 + xx + yy + zz, wx, wy, wz], 1),
+            np.stack([wx, 1 + xx - yy - zz, xy, xz], 1),
+            np.stack([wy, xy, 1 - xx + yy - zz, yz], 1),
+            np.stack([wz, xz, yz, 1 - xx - yy + zz], 1),
+        ],
+        1,
+    )
+    best = np.argmax(np.einsum("tii->ti", outer), axis=1)
+    rows = outer[np.arange(len(m)), best]
+    return rows / np.linalg.norm(rows, axis=1, keepdims=True)

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/sensors/calibration.hpp"
+
+#include "common.hpp"
+
+namespace sparse_mocap::python {
+namespace {
+
+// times_s (T,), specific_force (T, 3), angular_velocity (T, 3) or None.
+using BoundRecording = std::tuple<Doubles, Doubles, std::optional<Doubles>>;
+
+Eigen::Matrix3Xd columns(const Doubles& rows) {
+  // Row-major T x 3 is column-major 3 x T.
+  return Eigen::Map<const Eigen::Matrix3Xd>(rows.data(), 3, rows.shape(0));
+}
+
+SensorRecording recording_from(const BoundRecording& bound) {
+  const auto& [times_s, force, turn] = bound;
+  require_shape(times_s, {-1}, "times_s");
+  require_shape(force, {times_s.shape(0), 3}, "specific_force");
+  if (turn) require_shape(*turn, {times_s.shape(0), 3}, "angular_velocity");
+  SensorRecording out;
+  out.times_s.assign(times_s.data(), times_s.data() + times_s.size());
+  out.specific_force = columns(force);
+  if (turn) out.angular_velocity = columns(*turn);
+  return out;
+}
+
+py::dict told(const SensorCalibration& calibration) {
+  auto rotation = new_array({3, 3});
+  auto R = rotation.mutable_unchecked<2>();
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      R(row, column) = calibration.R_site_sensor(row, column);
+  py::dict out;
+  out["scale"] = calibration.scale;
+  out["R_site_sensor"] = rotation;
+  out["place"] = calibration.place;
+  out["is_mounting_determined"] = calibration.is_mounting_determined;
+  out["is_place_determined"] = calibration.is_place_determined;
+  auto bias = new_array({3});
+  std::copy(calibration.gyroscope_bias.data(), calibration.gyroscope_bias.data() + 3,
+            bias.mutable_data());
+  out["gyroscope_bias"] = bias;
+  out["gravity"] = calibration.gravity;
+  out["unrest_mps2"] = calibration.unrest_mps2;
+  out["axis_ratio"] = calibration.axis_ratio;
+  out["place_deviation"] = calibration.place_deviation;
+  out["quality"] = calibration.quality;
+  out["notes"] = calibration.notes;
+  return out;
+}
+
+py::dict calibrate(const std::string& site, const std::string& pose, const BoundRecording& standing,
+                   const std::vector<std::pair<std::string, BoundRecording>>& movements,
+                   double height_m, std::optional<double> default_place,
+                   const std::optional<Skeleton>& body) {
+  std::vector<RecordedMovement> recorded;
+  for (const auto& [name, recording] : movements)
+    recorded.push_back({&find_guided_movement(name), recording_from(recording)});
+  CalibrationSettings settings;
+  settings.pose = find_standing_pose(pose);
+  settings.height_m = height_m;
+  settings.default_place = default_place;
+  if (body) settings.bones = bones_of(*body);
+  return told(calibrate_sensor(all_sites()[static_cast<std::size_t>(find_site(site))],
+                               recording_from(standing), recorded, settings));
+}
+
+}  // namespace
+
+void bind_calibration(py::module_& m) {
+  m.def("standing_pose_names", [] {
+    return std::vector<std::string>(standing_pose_names().begin(), standing_pose_names().end());
+  });
+  m.def("guided_movements", [] {
+    py::dict out;
+    for (const auto& movement : guided_movements()) {
+      std::vector<std::string> sites;
+      for (const auto& turn : movement.turns) sites.emplace_back(turn.site);
+      out[py::str(std::string(movement.name))] =
+          py::make_tuple(std::string(movement.instruction), sites);
+    }
+    return out;
+  });
+  m.def("calibrate_sensor", &calibrate, py::arg("site"), py::arg("pose"), py::arg("standing"),
+        py::arg("movements"), py::arg("height_m"), py::arg("default_place"),
+        py::arg("body") = py::none());
+}
+
+}  // namespace sparse_mocap::python

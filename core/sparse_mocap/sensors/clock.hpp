@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <limits>
+
+namespace sparse_mocap {
+
+// Unwraps a counter of a few bits (sample counters, ticks of a device's clock).
+class CounterUnwrapper {
+ public:
+  // 1 to 64 bits. Throws std::invalid_argument.
+  explicit CounterUnwrapper(int bits);
+
+  // The value nearest to the last one plus expected_advance that has these low bits; the first
+  // value is raw itself. Steps back come out as such (repeated and late samples). expected_advance
+  // bridges silences longer than half the counter's range.
+  std::int64_t unwrap(std::uint64_t raw, std::int64_t expected_advance = 0);
+
+ private:
+  int bits_;
+  bool has_last_ = false;
+  std::int64_t last_ = 0;
+};
+
+struct ClockSettings {
+  double largest_drift = 500e-6;  // a device's clock against the host's, as a part
+  double window_s = 600.0;        // older arrivals are forgotten
+  double largest_step_s = 1.0;    // a device's clock that leaps further was set anew
+};
+
+// Maps a device's clock to the host's monotonic one.
+//
+// Samples arrive only ever late: by buffering, by bursts, by radio. So the line host = offset +
+// rate * device lies below all arrivals and touches them: its rate is the mean of all that allow
+// this, weighted by how likely they make the lateness, and within largest_drift of 1. What all
+// arrivals are late by at least cannot be seen and stays in the offset. A device without a clock is
+// one whose time is its sample counter over its nominal rate; allow it more drift.
+class ClockModel {
+ public:
+  explicit ClockModel(ClockSettings settings = {});
+
+  // One sample or burst: unwrapped device time and when it was received. Returns the host time of
+  // the sample; never before the time returned last. Times that are not finite throw
+  // std::invalid_argument.
+  double observe(double device_s, double arrival_s);
+
+  // By all that is known now; meaningful from the first observe on.
+  double host_time_s(double device_s) const;
+
+  double offset_s() const;   // host minus device where the device's time is 0
+  double drift_ppm() const;  // of the device's clock: positive when the host's seconds are longer
+  double mean_lateness_s() const;                     // of arrivals over the window: the jitter
+  int num_segments() const { return num_segments_; }  // 1 + how often the device's clock was reset
+
+ private:
+  // The arrivals of one second of device time: the least late, and the sums of all.
+  struct Bucket {
+    std::int64_t second = 0;
+    double device_s = 0.0, arrival_s = 0.0;
+    double device_sum = 0.0, arrival_sum = 0.0;
+    int count = 0;
+  };
+
+  bool was_reset(double device_s, double arrival_s) const;
+  void start_segment(double device_s, double arrival_s);
+  void add(double device_s, double arrival_s);
+  void fit();
+
+  ClockSettings settings_;
+  std::deque<Bucket> buckets_;
+  double origin_device_s_ = 0.0, origin_host_s_ = 0.0;  // keeps numbers small
+  double intercept_s_ = 0.0, drift_ = 0.0;              // host' = intercept + (1 + drift) device'
+  double last_device_s_ = 0.0;
+  double last_host_s_ = -std::numeric_limits<double>::infinity();
+  int num_segments_ = 0;
+};
+
+}  // namespace sparse_mocap

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/sensors/clock.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "support/synthetic.hpp"
+
+namespace sparse_mocap {
+namespace {
+
+using testing::Random;
+
+TEST(CounterUnwrapper, CountsOnThroughWrapsOfAnyWidth) {
+  for (const int bits : {1, 8, 12, 16, 24, 32, 63, 64}) {
+    CounterUnwrapper counter(bits);
+    const std::uint64_t range = bits == 64 ? 0 : std::uint64_t{1} << bits;
+    const std::uint64_t start = range - 3;  // modulo 2^64
+    const std::int64_t first = counter.unwrap(start);
+    for (std::int64_t step = 1; step < 10; ++step) {
+      const std::uint64_t count = start + static_cast<std::uint64_t>(step);
+      const std::uint64_t raw = range == 0 ? count : count % range;
+      EXPECT_EQ(counter.unwrap(raw, bits == 1 ? 1 : 0), first + step) << bits;
+    }
+  }
+}
+
+TEST(CounterUnwrapper, TellsRepeatsStepsBackAndGapsAsSuch) {
+  CounterUnwrapper counter(16);
+  EXPECT_EQ(counter.unwrap(65534), 65534);
+  EXPECT_EQ(counter.unwrap(65534), 65534);
+  EXPECT_EQ(counter.unwrap(8), 65544);
+  EXPECT_EQ(counter.unwrap(65530), 65530);
+}
+
+TEST(CounterUnwrapper, BridgesLongSilencesByWhatIsExpected) {
+  CounterUnwrapper counter(8);
+  counter.unwrap(10);
+  EXPECT_EQ(counter.unwrap((10 + 1000) % 256, 980), 1010);
+}
+
+TEST(CounterUnwrapper, RefusesImpossibleWidths) {
+  EXPECT_THROW(CounterUnwrapper(0), std::invalid_argument);
+  EXPECT_THROW(CounterUnwrapper(65), std::invalid_argument);
+}
+
+struct Stream {
+  double drift = 0.0;      // device seconds are this much shorter
+  double jitter_s = 0.05;  // arrivals are late by up to this
+  int burst = 1;           // samples that arrive together
+  double rate_hz = 100.0;
+  double minutes = 10.0;
+};
+
+// The largest error of the final model over the recording. Device ticks of 0.1 ms wrap at 16 bit,
+// host time begins somewhere.
+double largest_error_s(const Stream& stream, unsigned seed, ClockModel& clock) {
+  Random random(seed);
+  CounterUnwrapper ticks(16);
+  const double begin_s = 12345.678;
+  std::vector<double> device, host;
+  double last = -1.0;
+  const int samples = static_cast<int>(stream.minutes * 60.0 * stream.rate_hz);
+  for (int first = 0; first < samples; first += stream.burst) {
+    const int end = std::min(first + stream.burst, samples);
+    const double late_s = random.in(0.0, stream.jitter_s);
+    for (int i = first; i < end; ++i) {
+      const double true_s = begin_s + i / stream.rate_hz;
+      const auto tick = static_cast<std::uint64_t>(
+          std::llround((i / stream.rate_hz + 3.0) * (1.0 - stream.drift) * 1e4));
+      device.push_back(static_cast<double>(ticks.unwrap(tick % 65536)) * 1e-4);
+      host.push_back(true_s);
+      const double told =
+          clock.observe(device.back(), begin_s + (end - 1) / stream.rate_hz + late_s);
+      EXPECT_GE(told, last);
+      last = told;
+    }
+  }
+  double worst = 0.0;
+  for (std::size_t i = 0; i < device.size(); ++i)
+    worst = std::max(worst, std::abs(clock.host_time_s(device[i]) - host[i]));
+  return worst;
+}
+
+TEST(ClockModel, IsWithinAMillisecondUnderDriftJitterAndWraps) {
+  for (const double drift : {-100e-6, 100e-6})
+    for (const int burst : {1, 20}) {
+      ClockModel clock;
+      EXPECT_LT(largest_error_s({.drift = drift, .burst = burst}, 1, clock), 1e-3) << burst;
+      EXPECT_NEAR(clock.drift_ppm(), 1e6 * drift, 1.0);
+      EXPECT_EQ(clock.num_segments(), 1);
+    }
+}
+
+TEST(ClockModel, IsNearAMillisecondWithThreeHundredBurstsToGoBy) {
+  std::vector<double> errors_s;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    ClockModel clock;
+    errors_s.push_back(largest_error_s({.drift = 100e-6, .burst = 200}, seed, clock));
+    EXPECT_NEAR(clock.drift_ppm(), 100.0, 5.0);
+  }
+  std::sort(errors_s.begin(), errors_s.end());
+  EXPECT_LT(errors_s[2], 1e-3);
+  EXPECT_LT(errors_s[4], 2.5e-3);
+}
+
+TEST(ClockModel, TellsTheJitter) {
+  ClockModel clock;
+  largest_error_s({.jitter_s = 0.04}, 1, clock);
+  EXPECT_NEAR(clock.mean_lateness_s(), 0.02, 0.001);
+}
+
+TEST(ClockModel, ManagesWithASampleCounterAndANominalRate) {
+  ClockModel clock({.largest_drift = 0.05});
+  EXPECT_LT(largest_error_s({.drift = 0.02}, 1, clock), 2e-3);
+  EXPECT_NEAR(clock.drift_ppm(), 1e6 * (1.0 / 0.98 - 1.0), 10.0);
+}
+
+TEST(ClockModel, StartsAnewWhenTheDeviceRestarts) {
+  ClockModel clock;
+  for (int i = 0; i < 1000; ++i) clock.observe(50.0 + i * 0.01, 100.0 + i * 0.01);
+  double last = clock.host_time_s(59.99);
+  for (int i = 0; i < 1000; ++i) {
+    const double host = clock.observe(i * 0.01, 113.0 + i * 0.01);
+    EXPECT_GE(host, last);
+    last = host;
+  }
+  EXPECT_EQ(clock.num_segments(), 2);
+  EXPECT_NEAR(clock.host_time_s(5.0), 118.0, 1e-6);
+}
+
+TEST(ClockModel, StartsAnewWhenTheDeviceRunsAheadOfWhatHasArrived) {
+  ClockModel clock;
+  for (int i = 0; i < 100; ++i) clock.observe(i * 0.01, i * 0.01);
+  clock.observe(5000.0, 1.0);
+  EXPECT_EQ(clock.num_segments(), 2);
+  EXPECT_NEAR(clock.host_time_s(5000.0), 1.0, 1e-9);
+}
+
+TEST(ClockModel, BoundsTheDriftThatAFewArrivalsSuggest) {
+  ClockModel clock;
+  clock.observe(0.0, 10.05);
+  clock.observe(1.5, 11.5);
+  clock.observe(3.0, 13.04);
+  EXPECT_LE(std::abs(clock.drift_ppm()), 500.0 + 1e-9);
+  EXPECT_LE(clock.host_time_s(1.5), 11.5 + 1e-9);
+}
+
+TEST(ClockModel, RefusesWhatIsNoTime) {
+  ClockModel clock;
+  EXPECT_THROW(clock.observe(std::nan(""), 1.0), std::invalid_argument);
+  EXPECT_THROW(clock.observe(1.0, std::numeric_limits<double>::infinity()), std::invalid_argument);
+  EXPECT_THROW(ClockModel({.largest_drift = 0.0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace sparse_mocap
