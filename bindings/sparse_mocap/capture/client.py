@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import subprocess
@@ -147,8 +148,10 @@ class CaptureClient:
 def start_capture(config: CaptureConfig, folder: Path) -> CaptureClient:
     """Starts a capture process with its logs in a new or empty folder, and attaches to it.
 
-    Raises CaptureError, ConfigError for an unknown driver or option, and OSError.
+    Raises CaptureError, ConfigError for an unknown driver or option, ImportError without pyserial,
+    and OSError.
     """
+    importlib.import_module("serial")
     for link in config.links:
         make_parser(link.driver, link.options)
     folder = folder.absolute()

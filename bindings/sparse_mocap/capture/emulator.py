@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from ..take import Take
 from .drivers import Encoder, can_share_a_port, with_rate
+from .errors import CaptureError
 from .sample_log import SAMPLE, Samples
 
 _LONGEST_NAP_S = 0.05
@@ -148,7 +149,9 @@ class Emulator:
         ]
 
     def plug_in(self) -> list[str]:
-        """Makes the ports and returns their paths."""
+        """Makes the ports and returns their paths. Raises CaptureError where there are none."""
+        if not hasattr(os, "openpty"):
+            raise CaptureError("this system has no pseudo-terminals; emulate on Linux or macOS")
         for line in self.lines:
             line.plug_in()
         return [line.path for line in self.lines]
