@@ -273,6 +273,16 @@ def test_sensors_on_ports_of_their_own_make_one_take(play: Play, tmp_path: Path)
     assert [len(record.times_s) for record in recorded.take.sensors.values()] == [200, 200]
 
 
+def test_two_sensors_with_one_id_are_told(play: Play, tmp_path: Path) -> None:
+    options = {"columns": "time,sensor,counter,ax,ay,az"}
+    faults = Faults(is_id_duplicate=True)
+    emulator = play(some_take(5.0, 2), "text_line", options=options, faults=faults)
+    config = CaptureConfig((LinkConfig(emulator.lines[0].path, "text_line", options=options),))
+    with start_capture(config, tmp_path / "c") as client:
+        until(lambda: "two sensors seem to send under one id" in str(client.status()["links"]))
+        client.stop()
+
+
 def test_a_missing_port_is_told_at_once(tmp_path: Path) -> None:
     with CaptureClient.start(
         str(tmp_path / "nothing"), DRIVER, tmp_path / "c", options=OPTIONS
