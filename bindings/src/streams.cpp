@@ -65,14 +65,14 @@ py::dict arrays_of(const std::vector<Sample>& samples) {
   out["sensor"] = column_of<std::int64_t>(samples, [](const Sample& s) { return s.sensor; });
   out["time_s"] = column_of<double>(samples, [](const Sample& s) { return s.time_s; });
   out["counter"] = column_of<std::int64_t>(samples, [](const Sample& s) { return s.counter; });
-  out["specific_force"] =
-      rows_of(samples, 3, [](const Sample& s) -> const auto& { return s.specific_force; });
-  out["angular_velocity"] =
-      rows_of(samples, 3, [](const Sample& s) -> const auto& { return s.angular_velocity; });
-  out["orientation"] =
-      rows_of(samples, 4, [](const Sample& s) -> const auto& { return s.orientation; });
-  out["magnetic_field"] =
-      rows_of(samples, 3, [](const Sample& s) -> const auto& { return s.magnetic_field; });
+  out["specific_force"] = rows_of(
+      samples, 3, [](const Sample& s) -> const auto& { return s.specific_force; });
+  out["angular_velocity"] = rows_of(
+      samples, 3, [](const Sample& s) -> const auto& { return s.angular_velocity; });
+  out["orientation"] = rows_of(
+      samples, 4, [](const Sample& s) -> const auto& { return s.orientation; });
+  out["magnetic_field"] = rows_of(
+      samples, 3, [](const Sample& s) -> const auto& { return s.magnetic_field; });
   out["flags"] = column_of<std::uint32_t>(samples, [](const Sample& s) { return s.flags; });
   return out;
 }
