@@ -76,6 +76,10 @@ class CaptureClient:
         """The samples since the last call, (N,) of sample_log.SAMPLE."""
         return self._samples.read(most)
 
+    def skip(self) -> None:
+        """Leaves out what came by now."""
+        self._samples.seek_end()
+
     @property
     def position(self) -> int:
         """The number of the sample that is read next."""

@@ -88,6 +88,7 @@ def _settled(client: CaptureClient, sites: tuple[str, ...] | None) -> dict[str, 
     """Waits until no more sensors turn up, and returns the status with their sites."""
     client.wait_for_samples(FIRST_SAMPLE_TIMEOUT_S)
     time.sleep(_SETTLE_S)
+    client.skip()
     status = client.status()
     for sensor, site in zip(status["sensors"], sites or (), strict=False):
         sensor["site"] = site
