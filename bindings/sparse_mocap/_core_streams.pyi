@@ -49,8 +49,12 @@ class StreamEncoder:
         specific_force: ArrayLike,
         angular_velocity: ArrayLike | None = None,
         orientation: ArrayLike | None = None,
+        sensors: Sequence[int] | None = None,
     ) -> list[bytes]:
-        """The packets of one instant: (S, 3) m/s^2, (S, 3) rad/s, (S, 4) R_world_sensor."""
+        """The packets of one instant: (S, 3) m/s^2, (S, 3) rad/s, (S, 4) R_world_sensor.
+
+        sensors: whose rows these are; all sensors' when None.
+        """
     def respond(self, from_host: bytes) -> bytes: ...
 
 def driver_names() -> list[str]: ...

@@ -25,10 +25,20 @@ def write_positions(
         raise ValueError(
             f"positions must be ({len(times)}, {len(joint_names)}, 3), got {points.shape}"
         )
-    rows = np.column_stack([times, points.reshape(len(times), -1)])
-    row_format = ",".join(["%.6f"] * rows.shape[1])
-    lines = [",".join(_header(joint_names)), *(row_format % tuple(row) for row in rows.tolist())]
+    rows = (position_row(time, at) for time, at in zip(times.tolist(), points, strict=True))
+    lines = [position_header(joint_names), *rows]
     write_text(path, "\n".join(lines) + "\n")
+
+
+def position_header(joint_names: Sequence[str]) -> str:
+    """The first line of a positions file."""
+    return ",".join(_header(joint_names))
+
+
+def position_row(time_s: float, positions: ArrayLike) -> str:
+    """The line of a pose: positions (J, 3)."""
+    values = np.asarray(positions, float).ravel().tolist()
+    return ",".join(f"{value:.6f}" for value in (time_s, *values))
 
 
 def read_positions(path: Path) -> tuple[Floats, list[str], Floats]:

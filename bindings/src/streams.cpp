@@ -65,14 +65,14 @@ py::dict arrays_of(const std::vector<Sample>& samples) {
   out["sensor"] = column_of<std::int64_t>(samples, [](const Sample& s) { return s.sensor; });
   out["time_s"] = column_of<double>(samples, [](const Sample& s) { return s.time_s; });
   out["counter"] = column_of<std::int64_t>(samples, [](const Sample& s) { return s.counter; });
-  out["specific_force"] =
-      rows_of(samples, 3, [](const Sample& s) -> const auto& { return s.specific_force; });
-  out["angular_velocity"] =
-      rows_of(samples, 3, [](const Sample& s) -> const auto& { return s.angular_velocity; });
-  out["orientation"] =
-      rows_of(samples, 4, [](const Sample& s) -> const auto& { return s.orientation; });
-  out["magnetic_field"] =
-      rows_of(samples, 3, [](const Sample& s) -> const auto& { return s.magnetic_field; });
+  out["specific_force"] = rows_of(
+      samples, 3, [](const Sample& s) -> const auto& { return s.specific_force; });
+  out["angular_velocity"] = rows_of(
+      samples, 3, [](const Sample& s) -> const auto& { return s.angular_velocity; });
+  out["orientation"] = rows_of(
+      samples, 4, [](const Sample& s) -> const auto& { return s.orientation; });
+  out["magnetic_field"] = rows_of(
+      samples, 3, [](const Sample& s) -> const auto& { return s.magnetic_field; });
   out["flags"] = column_of<std::uint32_t>(samples, [](const Sample& s) { return s.flags; });
   return out;
 }
@@ -131,15 +131,18 @@ void set_row(double* out, const std::optional<Doubles>& rows, std::size_t at, py
 
 py::list encode(StreamEncoder& encoder, double time_s, std::int64_t counter,
                 const Doubles& specific_force, const std::optional<Doubles>& angular_velocity,
-                const std::optional<Doubles>& orientation) {
+                const std::optional<Doubles>& orientation,
+                const std::optional<std::vector<int>>& sensors) {
   require_shape(specific_force, {-1, 3}, "specific_force");
   const auto num = specific_force.shape(0);
   if (angular_velocity) require_shape(*angular_velocity, {num, 3}, "angular_velocity");
   if (orientation) require_shape(*orientation, {num, 4}, "orientation");
+  if (sensors && sensors->size() != static_cast<std::size_t>(num))
+    throw py::value_error("sensors must have one index for each row");
   std::vector<Sample> samples;
   for (std::size_t i = 0; i < static_cast<std::size_t>(num); ++i) {
     Sample sample;
-    sample.sensor = static_cast<int>(i);
+    sample.sensor = sensors ? (*sensors)[i] : static_cast<int>(i);
     sample.time_s = time_s;
     sample.counter = counter;
     set_row(sample.specific_force.data(), specific_force, i, 3);
@@ -183,7 +186,8 @@ void bind_encoder(py::module_& m) {
            py::arg("driver"), py::arg("sensor_names"))
       .def("hello", [](StreamEncoder& encoder) { return list_of(encoder.hello()); })
       .def("encode", &encode, py::arg("time_s"), py::arg("counter"), py::arg("specific_force"),
-           py::arg("angular_velocity") = py::none(), py::arg("orientation") = py::none())
+           py::arg("angular_velocity") = py::none(), py::arg("orientation") = py::none(),
+           py::arg("sensors") = py::none())
       .def(
           "respond",
           [](StreamEncoder& encoder, const py::bytes& from_host) {

@@ -33,6 +33,10 @@ COMMANDS = (
     ("reconstruct",),
     ("evaluate",),
     ("inspect",),
+    ("ports",),
+    ("record",),
+    ("live",),
+    ("emulate",),
 )
 
 

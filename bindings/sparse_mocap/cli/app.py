@@ -16,10 +16,14 @@ _COMMANDS = {
     "calibrate": ".calibrate:calibrate_command",
     "convert": ".convert:convert",
     "database": ".database:database",
+    "emulate": ".emulate:emulate",
     "evaluate": ".evaluate:evaluate",
     "import": ".import_recording:import_recording",
     "inspect": ".inspect:inspect",
+    "live": ".live:live",
+    "ports": ".ports:ports",
     "reconstruct": ".reconstruct:reconstruct",
+    "record": ".record:record",
     "simulate": ".simulate:simulate",
 }
 """A command's name, and the module that has it (loaded only when it is called)."""

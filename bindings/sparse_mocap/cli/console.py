@@ -47,12 +47,12 @@ def progress_bar(label: str) -> Iterator[ProgressCallback]:
         disable=not console.is_terminal,
         transient=True,
     )
-    with _interrupted() as interrupted, bar:
+    with interrupted() as stop, bar:
         task = bar.add_task(label, total=None, what="")
 
         def callback(done: int, total: int, what: str) -> bool:
             bar.update(task, completed=done, total=total, what=what[:40])
-            return not interrupted.is_set()
+            return not stop.is_set()
 
         yield callback
 
@@ -74,7 +74,7 @@ def import_bar(label: str) -> Iterator[tuple[ProgressCallback, DetailsCallback]]
         disable=not console.is_terminal,
         transient=True,
     )
-    with _interrupted() as interrupted, bar:
+    with interrupted() as stop, bar:
         task = bar.add_task(label, total=None, what="", figures="")
         start = time.monotonic()
 
@@ -87,7 +87,7 @@ def import_bar(label: str) -> Iterator[tuple[ProgressCallback, DetailsCallback]]
                 what=report.what[:40],
             )
 
-        yield lambda done, total, what: not interrupted.is_set(), details
+        yield lambda done, total, what: not stop.is_set(), details
 
 
 def figures_of(report: ProgressReport, elapsed_s: float) -> str:
@@ -97,7 +97,7 @@ def figures_of(report: ProgressReport, elapsed_s: float) -> str:
 
 
 @contextmanager
-def _interrupted() -> Iterator[threading.Event]:
+def interrupted() -> Iterator[threading.Event]:
     """Gives an event that Ctrl-C sets; a second Ctrl-C interrupts as ever."""
     event = threading.Event()
     if threading.current_thread() is not threading.main_thread():
@@ -114,6 +114,17 @@ def _interrupted() -> Iterator[threading.Event]:
         yield event
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def status_line() -> Iterator[Callable[[str], None]]:
+    """Gives a function that shows a line in place of the last one, on a terminal."""
+    console = Console(stderr=True, highlight=False)
+    if not console.is_terminal:
+        yield lambda text: None
+        return
+    with console.status("") as status:
+        yield status.update
 
 
 def warn(lines: Sequence[str]) -> None:

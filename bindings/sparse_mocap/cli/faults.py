@@ -47,8 +47,9 @@ def as_faults() -> Iterator[None]:
 
 def _core_errors() -> tuple[type[Exception], ...]:
     from .. import Cancelled, ConfigError, FormatError, MappingError
+    from ..capture.errors import CaptureError
 
-    return (FormatError, ConfigError, MappingError, Cancelled)
+    return (FormatError, ConfigError, MappingError, Cancelled, CaptureError)
 
 
 def _is_cancelled(error: Exception) -> bool:
@@ -65,6 +66,7 @@ def _told(error: OSError) -> str:
 
 def _missing(error: ImportError) -> str:
     package = (error.name or "").partition(".")[0]
-    if package in ("matplotlib", "rich"):
+    package = {"serial": "pyserial"}.get(package, package)
+    if package in ("matplotlib", "pyserial", "rich"):
         return f"this needs {package}; install it with: pip install 'sparse-mocap[cli]'"
     return str(error)

@@ -63,7 +63,11 @@ class Encoder : public StreamEncoder {
           "quaternion; leave output_mode and output_settings empty");
   }
 
-  std::vector<Bytes> hello() override { return {seal(kMasterBus, kWakeUp)}; }
+  // A device that sends MTData says how they are laid out before the first.
+  std::vector<Bytes> hello() override {
+    if (is_data2_) return {seal(kMasterBus, kWakeUp)};
+    return {seal(kMasterBus, kWakeUp), seal(kMasterBus, kConfiguration, configuration())};
+  }
 
   std::vector<Bytes> encode(std::span<const Sample> samples) override {
     if (samples.empty()) return {};

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kPeriodTick_s = 1.0 / 115200.0;
 constexpr std::size_t kConfigurationHead = 98, kConfigurationDevice = 20, kMostDevices = 32;
+constexpr std::uint64_t kAskAfter = 100;  // data that cannot be read
 
 std::string hexadecimal(std::uint32_t value) {
   std::array<char, 9> text{};
@@ -173,7 +174,7 @@ void Parser::take_data2(const Message& message) {
 
 void Parser::take_data(ByteView data) {
   if (blocks_.empty()) {
-    ++count(Count::unconfigured);
+    if (count(Count::unconfigured)++ % kAskAfter == 0) ask_for_configuration();
     return;
   }
   if (bus_counter_) return take_bus_data(data);
@@ -183,6 +184,12 @@ void Parser::take_data(ByteView data) {
     return tell("the data are not as long as the device's configuration says");
   }
   if (auto* device = device_at(kMasterBus)) take_measured(*device, *measured);
+}
+
+// A device answers that only while it does not measure.
+void Parser::ask_for_configuration() {
+  for (const auto id : {kGoToConfig, kReqConfiguration, kGoToMeasurement})
+    reply(seal(kMasterBus, id));
 }
 
 void Parser::take_bus_data(ByteView data) {

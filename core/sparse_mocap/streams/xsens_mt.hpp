@@ -45,6 +45,7 @@ class Parser : public StreamParser {
   bool knows_block(ByteView device);
   void take_data2(const Message& message);
   void take_data(ByteView data);
+  void ask_for_configuration();
   void take_bus_data(ByteView data);
   void take_measured(Device& device, const Measured& measured);
   Device* device_at(int address);

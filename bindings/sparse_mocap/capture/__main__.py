@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``python -m sparse_mocap.capture FOLDER``: the capture process.
+
+FOLDER holds ``config.json`` and gets the logs. The process is started by a client, belongs to no
+terminal and outlives whoever started it while it records.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import signal
+import sys
+from pathlib import Path
+from types import FrameType
+
+from .config import CONFIG_NAME, CaptureConfig
+from .recorder import Recorder
+from .server import Server
+
+
+def main(folder: Path) -> int:
+    """Captures until nobody needs it any more."""
+    config = CaptureConfig.from_json(json.loads((folder / CONFIG_NAME).read_text("utf-8")))
+    recorder = Recorder(folder, config)
+    server = Server(recorder)
+
+    def end(_number: int, _frame: FrameType | None) -> None:
+        server.must_end = True
+
+    signal.signal(signal.SIGTERM, end)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal's Ctrl-C is for the client
+    if hasattr(signal, "SIGHUP"):
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    recorder.start()
+    try:
+        server.run()
+    finally:
+        recorder.stop()
+        if config.is_temporary and recorder.num_recordings == 0:
+            shutil.rmtree(folder, ignore_errors=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A client of a capture: starts it, attaches to it, follows its samples, lets it go."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from ..files import write_text
+from .config import CONFIG_NAME, DEFAULT_BAUD, CaptureConfig, LinkConfig
+from .drivers import make_parser
+from .errors import CaptureError
+from .sample_log import SampleLogReader, Samples
+from .session import Connection, Session, read_session, session_path, sessions
+
+START_TIMEOUT_S = 20.0
+OUTPUT_NAME = "output.log"
+
+
+class CaptureClient:
+    """Attached to a capture process; closing detaches, and the capture ends when it is not needed.
+
+    Use it from one thread at a time. What it reads it reads from the capture's logs on disk, so a
+    client that was stalled goes on where it was.
+    """
+
+    def __init__(self, session: Session, position: int | None = None) -> None:
+        """Attaches; samples are read from that one on (None: from the next that comes)."""
+        self.session = session
+        try:
+            self._connection = Connection(session)
+        except (OSError, ValueError) as error:
+            raise CaptureError(f"the capture of process {session.pid} is gone: {error}") from error
+        self._samples = SampleLogReader(Path(session.folder), position or 0)
+        if position is None:
+            self._samples.seek_end()
+
+    @staticmethod
+    def start(
+        port: str,
+        driver: str,
+        folder: str | os.PathLike[str],
+        *,
+        baud: int = DEFAULT_BAUD,
+        options: Mapping[str, str] | None = None,
+    ) -> CaptureClient:
+        """Starts a capture of one port, and attaches. Raises CaptureError."""
+        return start_capture(
+            CaptureConfig((LinkConfig(port, driver, baud, options or {}),)), Path(folder)
+        )
+
+    @staticmethod
+    def running() -> list[Session]:
+        """The captures that one can attach to, oldest first."""
+        return sessions()
+
+    @property
+    def folder(self) -> Path:
+        """Of the capture's logs."""
+        return Path(self.session.folder)
+
+    def status(self) -> dict[str, Any]:
+        """What the capture is doing: links, sensors, recording. Raises CaptureError."""
+        return self._ask("status")
+
+    def read(self, most: int = 100_000) -> Samples:
+        """The samples since the last call, (N,) of sample_log.SAMPLE."""
+        return self._samples.read(most)
+
+    def skip(self) -> None:
+        """Leaves out what came by now."""
+        self._samples.seek_end()
+
+    @property
+    def position(self) -> int:
+        """The number of the sample that is read next."""
+        return self._samples.position
+
+    def wait_for_samples(self, timeout_s: float) -> dict[str, Any]:
+        """Waits until every link delivers, and returns the status then.
+
+        Raises CaptureError with the reason of a link that failed, or after the timeout.
+        """
+        end = time.monotonic() + timeout_s
+        while True:
+            status = self.status()
+            links = status["links"]
+            failed = [link for link in links if link["state"] == "failed"]
+            waiting = [link for link in links if link["state"] != "streaming"]
+            if failed or (waiting and time.monotonic() > end):
+                link = (failed or waiting)[0]
+                reason = link["message"] or f"{link['port']}: no sample came in {timeout_s:g} s"
+                raise CaptureError(reason)
+            if not waiting:
+                return status
+            time.sleep(0.05)
+
+    def record(self, seconds: float | None = None) -> dict[str, Any]:
+        """Records for so long from now, or until it is stopped, also without clients.
+
+        A recording that runs goes on. Returns its number, seconds and samples.
+        """
+        return self._ask("record", seconds=seconds)
+
+    def stop_recording(self) -> None:
+        """Ends the recording."""
+        self._ask("stop_recording")
+
+    def stop(self) -> None:
+        """Ends the capture, whoever else is attached, and waits until it is gone."""
+        self._ask("stop")
+        self.close()
+        end = time.monotonic() + START_TIMEOUT_S
+        while session_path(self.session.pid).exists() and time.monotonic() < end:
+            time.sleep(0.02)
+
+    def close(self) -> None:
+        """Detaches."""
+        self._connection.close()
+        self._samples.close()
+
+    def __enter__(self) -> CaptureClient:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _ask(self, request: str, **arguments: Any) -> dict[str, Any]:
+        try:
+            return self._connection.ask(request, **arguments)
+        except (OSError, ValueError) as error:
+            raise CaptureError(
+                f"the capture of process {self.session.pid} ended; what it received is in "
+                f"{self.session.folder}"
+            ) from error
+
+
+def start_capture(config: CaptureConfig, folder: Path) -> CaptureClient:
+    """Starts a capture process with its logs in a new or empty folder, and attaches to it.
+
+    Raises CaptureError, ConfigError for an unknown driver or option, ImportError without pyserial,
+    and OSError.
+    """
+    importlib.import_module("serial")
+    for link in config.links:
+        make_parser(link.driver, link.options)
+    folder = folder.absolute()
+    folder.mkdir(parents=True, exist_ok=True)
+    if any(folder.iterdir()):
+        raise CaptureError(f"{folder}: is not empty; name another folder")
+    write_text(folder / CONFIG_NAME, json.dumps(config.as_json()))
+    process = _launched(folder)
+    end = time.monotonic() + START_TIMEOUT_S
+    while time.monotonic() < end and process.poll() is None:
+        session = read_session(session_path(process.pid))
+        if session is not None and session.folder == str(folder):
+            return CaptureClient(session, position=0)
+        time.sleep(0.02)
+    process.kill()
+    lines = (folder / OUTPUT_NAME).read_text("utf-8", "replace").strip().splitlines()
+    raise CaptureError(f"the capture process did not start: {lines[-1] if lines else 'no answer'}")
+
+
+def _launched(folder: Path) -> subprocess.Popen[bytes]:
+    """Starts the process so that it belongs to no terminal and to no program's end."""
+    environment = dict(os.environ)
+    here = str(Path(__file__).resolve().parents[2])
+    paths = [here, *(path for path in sys.path if path)]
+    environment["PYTHONPATH"] = os.pathsep.join(dict.fromkeys(paths))
+    detached: dict[str, Any] = {"start_new_session": True}
+    if sys.platform == "win32":
+        flags = subprocess.DETACHED_PROCESS | subprocess.CREATE_NEW_PROCESS_GROUP
+        detached = {"creationflags": flags}
+    with open(folder / OUTPUT_NAME, "wb") as output:
+        process = subprocess.Popen(
+            [sys.executable, "-m", f"{__package__}", str(folder)],
+            stdin=subprocess.DEVNULL, stdout=output, stderr=output,
+            env=environment, **detached,
+        )  # fmt: skip
+    # An ended process stays a zombie until someone waits for it.
+    threading.Thread(target=process.wait, daemon=True).start()
+    return process

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The devices' protocols, as captures and emulators use them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from .. import ConfigError, StreamEncoder, StreamParser, site_names
+from .. import driver_names as driver_names
+from .. import keep_alive_commands as _keep_alive_commands
+from .. import start_commands as _start_commands
+from .sample_log import SAMPLE, Samples
+
+DATAGRAM_DRIVERS = ("slimevr",)
+"""On a serial port their datagrams come as [u16 length, big-endian][datagram]."""
+
+_USUAL_SITES = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
+_SAME_NAMES = (
+    "sensor", "counter", "flags", "specific_force", "angular_velocity", "orientation",
+)  # fmt: skip
+
+
+def site_order() -> list[str]:
+    """All sites, in the order in which sensors that nobody placed are taken to be worn."""
+    return [*_USUAL_SITES, *(site for site in site_names() if site not in _USUAL_SITES)]
+
+
+def make_parser(driver: str, options: Mapping[str, str]) -> StreamParser:
+    """Returns a parser. Raises ConfigError for an unknown driver or option."""
+    return StreamParser(driver, **options)
+
+
+def parsed(parser: StreamParser, data: bytes, sender: str = "") -> Samples:
+    """Returns the samples that these bytes or this datagram complete, without time of arrival."""
+    columns = parser.feed(data, sender or None)
+    samples = np.zeros(len(columns["sensor"]), SAMPLE)
+    for name in _SAME_NAMES:
+        samples[name] = columns[name]
+    samples["device_time_s"] = columns["time_s"]
+    return samples
+
+
+def start_commands(driver: str, options: Mapping[str, str]) -> tuple[bytes, ...]:
+    """What makes the device send."""
+    return tuple(_start_commands(driver, **options))
+
+
+def keep_alive_commands(driver: str, options: Mapping[str, str]) -> tuple[bytes, ...]:
+    """What the device wants to hear every second."""
+    return tuple(_keep_alive_commands(driver, **options))
+
+
+class Encoder:
+    """What a device with these sensors sends. Raises ConfigError when it cannot have so many."""
+
+    def __init__(self, driver: str, sensors: Sequence[str], options: Mapping[str, Any]) -> None:
+        self._encoder = StreamEncoder(driver, list(sensors), **options)
+        self._is_datagram = driver in DATAGRAM_DRIVERS
+        self._counter = 0
+
+    def hello(self) -> list[bytes]:
+        """What it sends of its own accord when it starts."""
+        return [self._framed(packet) for packet in self._encoder.hello()]
+
+    def encode(self, time_s: float, samples: Samples) -> list[bytes]:
+        """The packets of an instant, in s since the device started."""
+        packets = self._encoder.encode(
+            time_s,
+            self._counter,
+            samples["specific_force"].astype(np.float64),
+            samples["angular_velocity"].astype(np.float64),
+            samples["orientation"].astype(np.float64),
+            samples["sensor"].astype(np.int64),
+        )
+        self._counter += 1
+        return [self._framed(packet) for packet in packets]
+
+    def respond(self, asked: bytes) -> bytes:
+        """What it answers."""
+        return bytes(self._encoder.respond(asked))
+
+    def _framed(self, packet: bytes) -> bytes:
+        return len(packet).to_bytes(2, "big") + packet if self._is_datagram else packet
+
+
+def with_rate(driver: str, options: Mapping[str, Any], rate_hz: float) -> dict[str, Any]:
+    """The options with the sensors' rate, where the driver has such an option and allows it."""
+    wanted = {"rate_hz": f"{rate_hz:g}", **options}
+    try:
+        StreamParser(driver, **wanted)
+    except ConfigError:  # no such option, or the device has no such rate
+        return dict(options)
+    return wanted
+
+
+def can_share_a_port(driver: str, sensors: Sequence[str], options: Mapping[str, Any]) -> bool:
+    """Whether one device of the driver can have all these sensors."""
+    try:
+        Encoder(driver, sensors, options)
+    except ConfigError:
+        # With one sensor the reason is another, which is then raised.
+        Encoder(driver, sensors[:1], options)
+        return False
+    return True

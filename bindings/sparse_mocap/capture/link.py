@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A link: one port, opened again whenever it goes away.
+
+One thread reads and stamps, another keeps and decodes what was read.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import StrEnum
+from queue import Empty, SimpleQueue
+from typing import Any, Protocol
+
+from .config import LinkConfig
+from .errors import LogError, PortError
+from .ports import PORT_ERRORS, READ_TIMEOUT_S, PortInfo, device_at, open_port, port_of
+
+FIRST_BACKOFF_S = 0.1
+LONGEST_BACKOFF_S = 1.0
+"""So that a recording goes on within 2 s of a replug."""
+STALL_S = 1.0
+"""Without a sample for this long a link is stalled."""
+REOPEN_S = 5.0
+"""Without a byte for this long the port is opened anew: some adapters hang without an error."""
+PUZZLED_S = 3.0
+"""Bytes without a sample for this long mean a wrong driver or baud rate."""
+KEEP_ALIVE_S = 1.0
+LONGEST_READ = 4096
+MOST_WAITING = 10_000
+"""Reads that wait for a disk that does not take them."""
+
+
+class State(StrEnum):
+    """What a link is doing."""
+
+    DISCONNECTED = "disconnected"
+    OPENING = "opening"
+    CONFIGURING = "configuring"
+    STREAMING = "streaming"
+    STALLED = "stalled"
+    RECONNECTING = "reconnecting"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True)
+class Arrived:
+    """What came of some bytes."""
+
+    num_samples: int = 0
+    replies: tuple[bytes, ...] = ()
+    """What the protocol wants answered, and the start commands where the device began anew."""
+
+
+class Sink(Protocol):
+    """Who takes what a link gets. Called from the link's thread."""
+
+    def connected(self, link: int, port: str) -> tuple[bytes, ...]:
+        """The port was opened; returns the start commands."""
+
+    def keep_alive(self, link: int) -> tuple[bytes, ...]:
+        """What the device wants to hear every second."""
+
+    def arrived(self, link: int, arrival_ns: int, data: bytes, sender: str) -> Arrived:
+        """Bytes arrived, or a datagram when there is a sender. Raises LogError."""
+
+    def changed(self, link: int, state: State, message: str) -> None:
+        """The link's state or message changed."""
+
+
+@dataclass
+class Link:
+    """Reads a port in a thread of its own until it is stopped.
+
+    A port that cannot be opened at first fails with a message; one that was open before is tried
+    again for ever, found by its device's numbers under whichever name it returns.
+    """
+
+    index: int
+    config: LinkConfig
+    sink: Sink
+    opener: Callable[[str, int], Any] = open_port
+    device_of: Callable[[str], PortInfo | None] = device_at
+    name_of: Callable[[str, PortInfo | None], str] = port_of
+
+    state: State = State.DISCONNECTED
+    message: str = ""
+    opened_as: str = ""
+    num_bytes: int = 0
+    num_reconnects: int = 0
+    _device: PortInfo | None = None
+    _was_open: bool = False
+    _stop: threading.Event = field(default_factory=threading.Event)
+    _thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Starts the thread."""
+        self._thread = threading.Thread(target=self._run, name=f"link-{self.index}", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stops the thread, which closes the port, and waits for it."""
+        self._stop.set()
+        if self._thread is not None:
+            self._thread.join(timeout=10.0)
+
+    def _run(self) -> None:
+        backoff_s = FIRST_BACKOFF_S
+        while not self._stop.is_set():
+            try:
+                port = self._opened()
+                reason = self._served(port)
+                backoff_s = FIRST_BACKOFF_S
+            except PortError as error:
+                reason = str(error)
+                if not self._was_open:
+                    return self._enter(State.FAILED, reason)
+            except LogError as error:
+                return self._enter(State.FAILED, str(error))
+            if not self._stop.is_set():
+                self._enter(State.RECONNECTING, reason)
+                self._stop.wait(backoff_s)
+                backoff_s = min(2 * backoff_s, LONGEST_BACKOFF_S)
+        return self._enter(State.DISCONNECTED)
+
+    def _opened(self) -> Any:
+        if not self._was_open:
+            self._enter(State.OPENING)
+        name = self.name_of(self.config.port, self._device)
+        port = self.opener(name, self.config.baud)
+        self.num_reconnects += self._was_open
+        self._was_open, self.opened_as = True, name
+        self._device = self.device_of(name) or self._device
+        return port
+
+    def _served(self, port: Any) -> str:
+        """Serves an open port and returns why it ended."""
+        try:
+            self._enter(State.CONFIGURING)
+            self._write(port, self.sink.connected(self.index, self.opened_as))
+            return self._read(port)
+        except PORT_ERRORS as error:
+            return f"{self.opened_as}: the connection broke ({_short(error)}); plug it in again"
+        finally:
+            _close(port)
+
+    def _read(self, port: Any) -> str:
+        inbox: SimpleQueue[_Item | Exception] = SimpleQueue()
+        is_over = threading.Event()
+        reader = threading.Thread(target=_fetch, args=(port, inbox, is_over), daemon=True)
+        reader.start()
+        try:
+            reason = self._handle(port, inbox)
+        finally:
+            is_over.set()
+            reader.join()  # a port must not be closed under a read
+        while isinstance(item := _next(inbox, 0.0), _Item):
+            self.sink.arrived(self.index, item.arrival_ns, item.data, item.sender)
+        return reason
+
+    def _handle(self, port: Any, inbox: SimpleQueue[_Item | Exception]) -> str:
+        last_byte_s = last_sample_s = last_told_s = time.monotonic()
+        while not self._stop.is_set():
+            item = _next(inbox)
+            if isinstance(item, Exception):
+                raise item
+            if item is not None:
+                last_byte_s = item.arrival_ns * 1e-9
+                self.num_bytes += len(item.data)
+                came = self.sink.arrived(self.index, item.arrival_ns, item.data, item.sender)
+                self._write(port, came.replies, item.sender)
+                if came.num_samples:
+                    last_sample_s = last_byte_s
+                    self._enter(State.STREAMING)
+            now_s = last_byte_s if item is not None else time.monotonic()
+            if now_s - last_told_s > KEEP_ALIVE_S:
+                last_told_s = now_s
+                self._write(port, self.sink.keep_alive(self.index))
+            if now_s - last_byte_s > REOPEN_S:
+                return f"{self.opened_as}: nothing came for {REOPEN_S:g} s; is the device on?"
+            self._judge_silence(now_s - last_byte_s, now_s - last_sample_s)
+        return ""
+
+    def _judge_silence(self, without_byte_s: float, without_sample_s: float) -> None:
+        if without_sample_s < STALL_S:
+            return
+        if self.state is State.STREAMING:
+            self._enter(State.STALLED, f"{self.opened_as}: no sample for {STALL_S:g} s")
+        elif without_sample_s > PUZZLED_S and without_byte_s < STALL_S:
+            self._enter(
+                self.state,
+                f"{self.opened_as}: bytes come, but no sample of {self.config.driver} is among "
+                f"them; check the driver and the baud rate ({self.config.baud})",
+            )
+
+    def _write(self, port: Any, packets: tuple[bytes, ...], receiver: str = "") -> None:
+        for packet in packets:
+            if receiver:
+                port.send_to(receiver, packet)
+            else:
+                port.write(packet)
+
+    def _enter(self, state: State, message: str = "") -> None:
+        if (state, message) != (self.state, self.message):
+            self.state, self.message = state, message
+            self.sink.changed(self.index, state, message)
+
+
+@dataclass(frozen=True)
+class _Item:
+    arrival_ns: int
+    data: bytes
+    sender: str
+    """Of a datagram."""
+
+
+def _fetch(port: Any, inbox: SimpleQueue[_Item | Exception], is_over: threading.Event) -> None:
+    """Does nothing but read: a disk that is busy for a second must not make the wire run over."""
+    try:
+        while not is_over.is_set():
+            data = port.read(max(1, min(port.in_waiting, LONGEST_READ)))
+            if data:
+                inbox.put(_Item(time.monotonic_ns(), data, getattr(port, "sender", "")))
+            while inbox.qsize() > MOST_WAITING and not is_over.wait(0.01):
+                pass
+    except PORT_ERRORS as error:
+        inbox.put(error)
+
+
+def _next(
+    inbox: SimpleQueue[_Item | Exception], timeout_s: float = READ_TIMEOUT_S
+) -> _Item | Exception | None:
+    try:
+        return inbox.get(timeout=timeout_s)
+    except Empty:
+        return None
+
+
+def _close(port: Any) -> None:
+    try:
+        port.close()
+    except PORT_ERRORS:  # it is gone; what could be freed is freed
+        return
+
+
+def _short(error: Exception) -> str:
+    text = " ".join(str(error).split())
+    return text if len(text) < 120 else type(error).__name__

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Serial ports: which there are, how one is opened, and how it is found again after a replug."""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import serial
+from serial.tools import list_ports
+
+from .errors import PortError
+from .udp_port import SCHEME, UdpPort
+
+try:
+    import termios
+
+    _TERMIOS_ERRORS: tuple[type[Exception], ...] = (termios.error,)
+except ImportError:  # not on Windows
+    _TERMIOS_ERRORS = ()
+
+PORT_ERRORS: tuple[type[Exception], ...] = (
+    OSError,  # SerialException is one; in_waiting raises it plainly
+    TypeError,  # read() of a port that another thread closed
+    AttributeError,  # the same on Windows
+    ValueError,  # the same of a socket
+    *_TERMIOS_ERRORS,  # flush() and the like of a port that is gone
+)
+"""What pyserial raises when a device goes away, depending on what it was asked just then."""
+
+READ_TIMEOUT_S = 0.1
+
+
+@dataclass(frozen=True)
+class PortInfo:
+    """A serial port and the device behind it, as far as the system knows."""
+
+    port: str
+    description: str = ""
+    vendor_id: int | None = None
+    product_id: int | None = None
+    serial_number: str | None = None
+    manufacturer: str | None = None
+    product: str | None = None
+    location: str | None = None
+
+    def is_same_device(self, other: PortInfo) -> bool:
+        """Whether it is the same USB device; by where it is plugged when it has no number."""
+        if self.vendor_id is None or (self.vendor_id, self.product_id) != (
+            other.vendor_id,
+            other.product_id,
+        ):
+            return False
+        if self.serial_number or other.serial_number:
+            return self.serial_number == other.serial_number
+        return self.location == other.location
+
+    def as_json(self) -> dict[str, Any]:
+        """As JSON has it."""
+        return asdict(self)
+
+
+def available_ports() -> list[PortInfo]:
+    """The system's serial ports, those of USB devices first."""
+    found = [
+        PortInfo(
+            port.device,
+            "" if port.description in (None, "n/a") else port.description,
+            port.vid,
+            port.pid,
+            port.serial_number,
+            port.manufacturer,
+            port.product,
+            port.location,
+        )
+        for port in list_ports.comports()
+    ]
+    return sorted(found, key=lambda port: (port.vendor_id is None, port.port))
+
+
+def device_at(
+    port: str, ports: Callable[[], Iterable[PortInfo]] = available_ports
+) -> PortInfo | None:
+    """The USB device behind a port; None for URLs, pseudo-terminals and what is unknown."""
+    if is_url(port):
+        return None
+    real = os.path.realpath(port)
+    for info in ports():
+        if info.vendor_id is not None and real in (info.port, os.path.realpath(info.port)):
+            return info
+    return None
+
+
+def port_of(
+    asked: str, device: PortInfo | None, ports: Callable[[], Iterable[PortInfo]] = available_ports
+) -> str:
+    """The name under which the device is to be opened now: it may have changed by a replug."""
+    if device is None:
+        return asked
+    return next((info.port for info in ports() if info.is_same_device(device)), asked)
+
+
+def is_url(port: str) -> bool:
+    """Whether the port is a URL."""
+    return "://" in port
+
+
+def open_port(port: str, baud: int) -> Any:
+    """Opens a port, pyserial URL or udp://HOST:PORT exclusively. Raises PortError."""
+    try:
+        if port.startswith(SCHEME):
+            return UdpPort(port, READ_TIMEOUT_S)
+        return serial.serial_for_url(
+            port, baudrate=baud, timeout=READ_TIMEOUT_S, write_timeout=1.0, exclusive=True
+        )
+    except PORT_ERRORS as error:
+        raise PortError(_told(port, error)) from error
+
+
+def _told(port: str, error: Exception) -> str:
+    number, text = _error_number(error), str(error)
+    if number in (errno.EACCES, errno.EPERM) or "PermissionError" in text:
+        if sys.platform == "win32":
+            return f"{port}: another program has the port open, or it may not be used; close that"
+        return (
+            f"{port}: permission denied; add yourself to the group of the port "
+            "(sudo usermod -a -G dialout $USER), then log out and in"
+        )
+    if number in (errno.ENOENT, errno.ENODEV, errno.ENXIO) or "FileNotFoundError" in text:
+        return f"{port}: there is no such port; plug the device in (`sparse-mocap ports` lists all)"
+    if number in (errno.EBUSY, errno.EAGAIN, errno.EADDRINUSE):
+        return f"{port}: another program has the port open; close it there"
+    if number in (errno.ENOTTY, errno.EISDIR, errno.EINVAL):
+        return f"{port}: is no serial port; `sparse-mocap ports` lists them"
+    if number == errno.ECONNREFUSED:
+        return f"{port}: nothing listens there; start what serves the port"
+    return f"{port}: {' '.join(text.split()) or type(error).__name__}"
+
+
+def _error_number(error: Exception) -> int | None:
+    """The system's number of an error, which pyserial often leaves in the text alone."""
+    number = getattr(error, "errno", None)
+    found = re.search(r"\[Errno (-?\d+)\]|: \((\d+), '", str(error))
+    if number is None and found:
+        number = int(found[1] or found[2])
+    return number

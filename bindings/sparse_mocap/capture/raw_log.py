@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The raw log: every byte that arrived and when, on disk before anything else is done with it.
+
+A file of records behind the 8 bytes ``SMRAWLG1``. All numbers are little-endian::
+
+    2 bytes  F5 4C          begins a record
+    u8       kind           1 bytes of a link, 2 a datagram of a link, 3 an event
+    u8       link           which of the capture's links (0, 1, ...)
+    u32      length         of the payload
+    i64      arrival        monotonic clock of the machine, nanoseconds
+    payload                 bytes | u8 length of the sender's name, name, datagram | JSON, UTF-8
+    u32      CRC-32         of everything after the first two bytes
+
+A record is handed to the operating system in one write, so that a killed capture loses nothing that
+it had received; the disk is synced about once a second, for the loss of power. What a crash tore at
+the end is no record (its length or checksum is wrong), and reading stops before it. Damage in the
+middle is skipped up to the next record whose checksum holds.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import IntEnum
+from pathlib import Path
+from typing import Any, BinaryIO
+
+MAGIC = b"SMRAWLG1"
+FILE_NAME = "raw.log"
+
+_BEGIN = b"\xf5\x4c"
+_HEAD = struct.Struct("<BBIq")
+_CHECK = struct.Struct("<I")
+_LONGEST_PAYLOAD = 1 << 20
+
+
+class Kind(IntEnum):
+    """What a record holds."""
+
+    BYTES = 1
+    DATAGRAM = 2
+    EVENT = 3
+
+
+@dataclass(frozen=True)
+class Record:
+    """One record."""
+
+    kind: Kind
+    link: int
+    arrival_ns: int
+    payload: bytes
+
+    @property
+    def event(self) -> dict[str, Any]:
+        """The payload of an event."""
+        value = json.loads(self.payload)
+        return value if isinstance(value, dict) else {}
+
+    @property
+    def datagram(self) -> tuple[str, bytes]:
+        """Sender and content of a datagram."""
+        end = 1 + self.payload[0]
+        return self.payload[1:end].decode("utf-8", "replace"), self.payload[end:]
+
+
+class RawLogWriter:
+    """Appends records to a new log; each is one write to the operating system."""
+
+    def __init__(self, folder: Path) -> None:
+        self._file = open(folder / FILE_NAME, "xb", buffering=0)  # noqa: SIM115
+        self._file.write(MAGIC)
+        self.num_bytes = len(MAGIC)
+
+    def append(self, kind: Kind, link: int, arrival_ns: int, payload: bytes) -> None:
+        """Appends a record. Raises OSError, such as for a full disk."""
+        body = _HEAD.pack(kind, link, len(payload), arrival_ns) + payload
+        record = memoryview(_BEGIN + body + _CHECK.pack(zlib.crc32(body)))
+        while len(record):
+            written = self._file.write(record)
+            self.num_bytes += written
+            record = record[written:]
+
+    def append_bytes(self, link: int, arrival_ns: int, data: bytes) -> None:
+        """Appends bytes of a link."""
+        self.append(Kind.BYTES, link, arrival_ns, data)
+
+    def append_event(self, link: int, arrival_ns: int, event: dict[str, Any]) -> None:
+        """Appends an event."""
+        self.append(Kind.EVENT, link, arrival_ns, json.dumps(event).encode())
+
+    def append_datagram(self, link: int, arrival_ns: int, sender: str, datagram: bytes) -> None:
+        """Appends a datagram and who sent it."""
+        name = sender.encode()[:255]
+        self.append(Kind.DATAGRAM, link, arrival_ns, bytes([len(name)]) + name + datagram)
+
+    def sync(self) -> None:
+        """Waits until the disk has what was appended."""
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        """Syncs and closes."""
+        if not self._file.closed:
+            self.sync()
+            self._file.close()
+
+
+def read_records(path: Path) -> Iterator[Record]:
+    """Gives the records of a log, also of one that is being written or was torn.
+
+    Raises ValueError when the file is no raw log, and OSError.
+    """
+    with open(path, "rb") as file:
+        if file.read(len(MAGIC)) != MAGIC:
+            raise ValueError(f"{path}: is no raw log of a capture")
+        yield from _records(file)
+
+
+def _records(file: BinaryIO) -> Iterator[Record]:
+    pending = b""
+    while block := file.read(1 << 16):
+        pending += block
+        at = 0
+        while True:
+            record, end = _record_at(pending, at)
+            if record is not None:
+                yield record
+            elif end == at:
+                break
+            at = end
+        pending = pending[at:]
+    # A torn record's claimed length may reach over whole records behind it.
+    for at in _begins(pending, 1):
+        record, _ = _record_at(pending, at)
+        if record is not None:
+            yield from _records(io.BytesIO(pending[at:]))
+            return
+
+
+def _record_at(data: bytes, at: int) -> tuple[Record | None, int]:
+    """Returns the record at ``at`` and its end; no record and where to look next.
+
+    The latter is ``at`` itself while more bytes are needed to know.
+    """
+    if not data.startswith(_BEGIN, at):
+        begin = data.find(_BEGIN, at)
+        return None, begin if begin >= 0 else max(at, len(data) - 1)
+    body = at + len(_BEGIN)
+    if len(data) < body + _HEAD.size:
+        return None, at
+    kind, link, length, arrival_ns = _HEAD.unpack_from(data, body)
+    payload = body + _HEAD.size
+    end = payload + length
+    if kind not in tuple(Kind) or length > _LONGEST_PAYLOAD:
+        return None, at + 1
+    if len(data) < end + _CHECK.size:
+        return None, at
+    if _CHECK.unpack_from(data, end)[0] != zlib.crc32(data[body:end]):
+        return None, at + 1
+    return Record(Kind(kind), link, arrival_ns, data[payload:end]), end + _CHECK.size
+
+
+def _begins(data: bytes, at: int) -> Iterator[int]:
+    while (at := data.find(_BEGIN, at)) >= 0:
+        yield at
+        at += 1

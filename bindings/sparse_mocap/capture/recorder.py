@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The heart of a capture: what arrives goes to the raw log, is decoded, and to the sample log."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .config import CaptureConfig
+from .decoder import Decoder
+from .errors import LogError
+from .link import Arrived, Link, State
+from .raw_log import RawLogWriter
+from .sample_log import SampleLogWriter, Samples
+
+SILENT_S = 0.1
+"""A sensor without a sample for longer than this is silent."""
+_RATE_WINDOW = 5  # ticks
+_CROWDED = 0.2  # this part of the frames repeated or out of order: two sensors share an id
+
+
+@dataclass
+class Recording:
+    """A part of the capture that is to become a take."""
+
+    number: int
+    begin_ns: int
+    until_ns: int | None = None
+    """When it ends by itself."""
+    first_sample: int = 0
+
+
+class Recorder:
+    """Takes what the links get, from their threads, and keeps and counts it."""
+
+    def __init__(self, folder: Path, config: CaptureConfig) -> None:
+        self.folder, self.config = folder, config
+        self._raw = RawLogWriter(folder)
+        self._log = SampleLogWriter(folder)
+        self._lock = threading.Lock()
+        self._decoder = Decoder(config)
+        self._told_sensors = 0
+        self._last: dict[int, Any] = {}
+        self._num_of: dict[int, int] = {}
+        self._rates: deque[tuple[float, dict[int, int]]] = deque(maxlen=_RATE_WINDOW)
+        self.recording: Recording | None = None
+        self.num_recordings = 0
+        self._event(0, {"event": "capture", "config": config.as_json(), "unix_s": time.time()})
+        self.links = [Link(index, link, self) for index, link in enumerate(config.links)]
+
+    def start(self) -> None:
+        """Opens the links."""
+        if self.config.must_record:
+            self.start_recording(None)
+        for link in self.links:
+            link.start()
+
+    def stop(self) -> None:
+        """Stops the links and the recording, and closes the logs."""
+        for link in self.links:
+            link.stop()
+        with self._lock:
+            self._stop_recording()
+            self._raw.close()
+            self._log.close()
+
+    def connected(self, link: int, port: str) -> tuple[bytes, ...]:
+        """A link's port was opened."""
+        with self._lock:
+            self._event(link, {"event": "connected", "port": port})
+            return self._decoder.connected(link)
+
+    def keep_alive(self, link: int) -> tuple[bytes, ...]:
+        """What the link's device wants to hear every second."""
+        return self._decoder.keep_alive(link)
+
+    def changed(self, link: int, state: State, message: str) -> None:
+        """A link's state changed; the log keeps it, since it explains gaps."""
+        with self._lock:
+            try:
+                self._event(link, {"event": "state", "state": state, "message": message})
+            except (LogError, ValueError):
+                return  # a full disk or a closed log is told by what else it stops
+
+    def arrived(self, link: int, arrival_ns: int, data: bytes, sender: str = "") -> Arrived:
+        """Bytes arrived: they are kept before anything else is done with them."""
+        with self._lock:
+            try:
+                if sender:
+                    self._raw.append_datagram(link, arrival_ns, sender, data)
+                else:
+                    self._raw.append_bytes(link, arrival_ns, data)
+                decoded = self._decoder.arrived(link, arrival_ns, data, sender)
+                self._log.append(decoded.samples)
+            except OSError as error:
+                raise self._log_error(error) from error
+            self._count(decoded.samples)
+            self._tell_new_sensors()
+        return Arrived(len(decoded.samples), decoded.replies)
+
+    def tick(self) -> None:
+        """Is called about twice a second: syncs the disk, ends recordings, counts rates."""
+        with self._lock:
+            recording = self.recording
+            if recording and recording.until_ns and time.monotonic_ns() >= recording.until_ns:
+                self._stop_recording()
+            self._rates.append((time.monotonic(), dict(self._num_of)))
+        try:
+            self._raw.sync()  # outside the lock: a slow disk must not hold up the links
+        except (OSError, ValueError):
+            return
+
+    def start_recording(self, seconds: float | None) -> dict[str, Any]:
+        """Records for so long from now, or until it is stopped; a recording that runs goes on."""
+        with self._lock:
+            now = time.monotonic_ns()
+            if self.recording is None:
+                self.recording = Recording(self.num_recordings, now, None, self._log.num_samples)
+                self._event(0, {"event": "recording", "number": self.num_recordings})
+                self.num_recordings += 1
+            self.recording.until_ns = None if seconds is None else now + int(seconds * 1e9)
+            return self._recording_json()
+
+    def stop_recording(self) -> None:
+        """Ends the recording, if one goes on."""
+        with self._lock:
+            self._stop_recording()
+
+    def status(self) -> dict[str, Any]:
+        """What the capture is doing, as JSON has it."""
+        with self._lock:
+            now_ns = time.monotonic_ns()
+            return {
+                "now_ns": now_ns,
+                "folder": str(self.folder),
+                "samples": self._log.num_samples,
+                "recordings": self.num_recordings,
+                "recording": self._recording_json() if self.recording else None,
+                "are_sites_guessed": self._decoder.are_sites_guessed,
+                "links": [self._link_json(link) for link in self.links],
+                "sensors": [
+                    self._sensor_json(i, now_ns) for i in range(len(self._decoder.sensors))
+                ],
+            }
+
+    def _event(self, link: int, event: dict[str, Any]) -> None:
+        try:
+            self._raw.append_event(link, time.monotonic_ns(), event)
+        except OSError as error:
+            raise self._log_error(error) from error
+
+    def _log_error(self, error: OSError) -> LogError:
+        return LogError(f"{self.folder}: {error.strerror or error}; free some space")
+
+    def _stop_recording(self) -> None:
+        if self.recording is not None:
+            self._event(0, {"event": "recording_end", "number": self.recording.number})
+            self.recording = None
+
+    def _recording_json(self) -> dict[str, Any]:
+        assert self.recording is not None
+        recording = self.recording
+        return {
+            "number": recording.number,
+            "seconds": (time.monotonic_ns() - recording.begin_ns) * 1e-9,
+            "samples": self._log.num_samples - recording.first_sample,
+            "first_sample": recording.first_sample,
+        }
+
+    def _count(self, samples: Samples) -> None:
+        for sensor in np.unique(samples["sensor"]).tolist():
+            own = samples[samples["sensor"] == sensor]
+            self._num_of[sensor] = self._num_of.get(sensor, 0) + len(own)
+            self._last[sensor] = own[-1]
+
+    def _tell_new_sensors(self) -> None:
+        sensors = self._decoder.sensors
+        for index in range(self._told_sensors, len(sensors)):
+            sensor = sensors[index]
+            self._event(sensor.link, {"event": "sensor", "index": index, "name": sensor.name})
+        self._told_sensors = len(sensors)
+
+    def _link_json(self, link: Link) -> dict[str, Any]:
+        counters = self._decoder.counters(link.index)
+        frames = counters.get("samples", 0)
+        crowd = counters.get("repeated", 0) + counters.get("out_of_order", 0)
+        message = link.message
+        if not message and frames > 100 and crowd > _CROWDED * (frames + crowd):
+            message = f"{link.opened_as}: two sensors seem to send under one id; change one"
+        return {
+            "port": link.config.port, "opened_as": link.opened_as, "driver": link.config.driver,
+            "state": str(link.state), "message": message,
+            "device_message": self._decoder.message(link.index),
+            "bytes": link.num_bytes, "reconnects": link.num_reconnects, "counters": counters,
+        }  # fmt: skip
+
+    def _sensor_json(self, index: int, now_ns: int) -> dict[str, Any]:
+        sensor, last = self._decoder.sensors[index], self._last.get(index)
+        told: dict[str, Any] = {
+            "name": sensor.name, "site": self._decoder.sites[index], "link": sensor.link,
+            "samples": self._num_of.get(index, 0), "missing": sensor.num_missing,
+            "rate_hz": self._rate(index), "age_s": None, "specific_force": None,
+            "state": "silent", "flags": 0,
+        }  # fmt: skip
+        if last is not None:
+            age_s = (now_ns - int(last["arrival_ns"])) * 1e-9
+            told["age_s"], told["flags"] = age_s, int(last["flags"])
+            told["specific_force"] = np.round(last["specific_force"], 3).tolist()
+            told["state"] = "silent" if age_s > SILENT_S else "live"
+        return told
+
+    def _rate(self, index: int) -> float:
+        if not self._rates:
+            return 0.0
+        begin_s, then = self._rates[0]
+        return (self._num_of.get(index, 0) - then.get(index, 0)) / max(
+            time.monotonic() - begin_s, 0.1
+        )

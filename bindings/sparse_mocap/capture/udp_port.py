@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A UDP socket in the clothes of a serial port, for sensors that send datagrams over Wi-Fi."""
+
+from __future__ import annotations
+
+import socket
+from urllib.parse import urlsplit
+
+SCHEME = "udp://"
+_LONGEST_DATAGRAM = 65_536
+_MOST_SENDERS = 64
+
+
+class UdpPort:
+    """Listens at ``udp://HOST:PORT``."""
+
+    in_waiting = 0
+
+    def __init__(self, url: str, timeout_s: float) -> None:
+        place = urlsplit(url)
+        if not place.hostname or not place.port:
+            raise ValueError("is not udp://HOST:PORT, such as udp://0.0.0.0:6969")
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            self._socket.settimeout(timeout_s)
+            self._socket.bind((place.hostname, place.port))
+        except BaseException:
+            self._socket.close()
+            raise
+        self._senders: dict[str, tuple[str, int]] = {}
+        self.sender = ""
+        """Of the datagram that was just read; empty when none came."""
+
+    def read(self, size: int) -> bytes:
+        """Returns a whole datagram, or nothing when none comes in time."""
+        try:
+            data, address = self._socket.recvfrom(_LONGEST_DATAGRAM)
+        except TimeoutError:
+            self.sender = ""
+            return b""
+        self.sender = f"{address[0]}:{address[1]}"
+        if len(self._senders) < _MOST_SENDERS:
+            self._senders[self.sender] = address
+        return data
+
+    def write(self, data: bytes) -> int:
+        """Sends a datagram to everybody who ever sent one."""
+        for sender in tuple(self._senders):
+            self.send_to(sender, data)
+        return len(data)
+
+    def send_to(self, receiver: str, data: bytes) -> None:
+        """Sends a datagram to one who sent one."""
+        if receiver in self._senders:
+            self._socket.sendto(data, self._senders[receiver])
+
+    def close(self) -> None:
+        """Stops listening."""
+        self._socket.close()

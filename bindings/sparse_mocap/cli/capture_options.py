@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the commands about sensors share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from ..capture.config import DEFAULT_BAUD, CaptureConfig, LinkConfig
+from ..capture.drivers import driver_names
+from .options import Decorator, Sites
+
+
+class Span(click.ParamType):  # type: ignore[type-arg]
+    """A stretch of time."""
+
+    name = "S@T"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, float]:
+        """Returns begin and length in s."""
+        if isinstance(value, tuple):
+            return value
+        length, _, begin = str(value).partition("@")
+        try:
+            span = float(begin), float(length)
+        except ValueError:
+            self.fail(f"{value!r} is not S@T, such as 5@12.5: for 5 s from 12.5 s on", param, ctx)
+        if not (span[0] >= 0 and span[1] >= 0):
+            self.fail(f"{value!r} has a time below 0", param, ctx)
+        return span
+
+
+class _Setting(click.ParamType):  # type: ignore[type-arg]
+    """A setting of a driver."""
+
+    name = "NAME=VALUE"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, str]:
+        """Returns name and value."""
+        if isinstance(value, tuple):
+            return value
+        name, equals, text = str(value).partition("=")
+        if not equals:
+            self.fail(f"{value!r} is not NAME=VALUE", param, ctx)
+        return name.strip(), text.strip()
+
+
+_DRIVER_HELP = "Whose protocol is spoken there."
+
+driver_option: Decorator = click.option(
+    "--driver", type=click.Choice(driver_names()), required=True, help=_DRIVER_HELP
+)
+
+
+def _as_dictionary(
+    _ctx: click.Context, _param: click.Parameter, value: tuple[tuple[str, str], ...]
+) -> dict[str, str]:
+    return dict(value)
+
+
+driver_options_option: Decorator = click.option(
+    "--option", "options", type=_Setting(), multiple=True, callback=_as_dictionary,
+    help="A setting of the driver. May be repeated.",
+)  # fmt: skip
+
+
+def capture_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Adds the options that say what to capture."""
+    for option in (
+        click.option(
+            "--sites", type=Sites(), default=None,
+            help="Where the sensors are worn, in their order.",
+        ),
+        driver_options_option,
+        click.option(
+            "--baud", type=click.IntRange(50, 4_000_000), default=DEFAULT_BAUD, show_default=True
+        ),
+        click.option("--driver", type=click.Choice(driver_names()), help=_DRIVER_HELP),
+        click.option(
+            "--port", "ports", metavar="PORT_OR_URL", multiple=True,
+            help="A serial port or pyserial URL; repeated where each sensor has its own.",
+        ),
+    ):  # fmt: skip
+        function = option(function)
+    return function
+
+
+def config_of(
+    ports: tuple[str, ...],
+    driver: str | None,
+    baud: int,
+    options: dict[str, str],
+    sites: tuple[str, ...] | None,
+) -> CaptureConfig:
+    """Returns what is to be captured. Raises UsageError when it is not said."""
+    if not ports:
+        raise click.UsageError("Missing option '--port'.")
+    if driver is None:
+        raise click.UsageError("Missing option '--driver'.")
+    return CaptureConfig(
+        tuple(LinkConfig(port, driver, baud, options) for port in ports), sites or ()
+    )

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``sparse-mocap live``: sensors into poses as they come, watched in the terminal."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import time
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.console import Console
+from rich.live import Live
+
+from .. import MotionDatabase
+from ..capture.client import CaptureClient, start_capture
+from .capture_options import capture_options, config_of
+from .console import interrupted, warn
+from .live_session import LiveSession
+from .live_view import view
+from .options import FilePath, check_presets, method_option
+from .record import FIRST_SAMPLE_TIMEOUT_S, attached
+
+_LOOK_S = 0.01
+_SHOW_S = 0.2
+_SETTLE_S = 1.0
+
+
+@click.command()
+@capture_options
+@click.option("--database", "database_path", metavar="DB.smdb", type=FilePath, required=True)
+@method_option
+@click.option(
+    "--preset", default="default", show_default=True, help="The method's settings by name."
+)
+@click.option("--positions", type=FilePath, help="Streams the joints' positions to a file (.csv).")
+@click.option("--seconds", type=click.FloatRange(0.1), help="Ends by itself.")
+@click.option(
+    "--attach", is_flag=False, flag_value=0, type=click.IntRange(min=0), metavar="[PID]",
+    help="Watches a capture that runs (the only one, or that of a process).",
+)  # fmt: skip
+def live(
+    ports: tuple[str, ...],
+    driver: str | None,
+    baud: int,
+    options: dict[str, str],
+    sites: tuple[str, ...] | None,
+    database_path: Path,
+    method: str,
+    preset: str,
+    positions: Path | None,
+    seconds: float | None,
+    attach: int | None,
+) -> None:
+    """Shows sensors and the motion that is reconstructed from them, until Ctrl-C.
+
+    For each sensor: rate, loss, last value and state; and how well the motion fits the readings and
+    how long it takes from a movement to its pose. Nothing is recorded.
+    """
+    check_presets(method, [preset])
+    database = MotionDatabase(database_path)
+    with ExitStack() as stack:
+        if attach is not None:
+            client = stack.enter_context(attached(attach))
+        else:
+            config = config_of(ports, driver, baud, options, sites)
+            client = _own_capture(stack, config)
+        status = _settled(client, sites)
+        session = LiveSession(client, status, database, method, preset)
+        if positions is not None:
+            session.stream_to(stack.enter_context(positions.open("w", encoding="utf-8")))
+        _watch(stack, client, session, seconds)
+    click.echo(session.summary())
+
+
+def _own_capture(stack: ExitStack, config: Any) -> CaptureClient:
+    folder = Path(tempfile.mkdtemp(prefix="sparse-mocap-live-"))
+    stack.callback(shutil.rmtree, folder, ignore_errors=True)
+    client = start_capture(replace(config, is_temporary=True), folder)
+    stack.callback(client.stop)
+    return client
+
+
+def _settled(client: CaptureClient, sites: tuple[str, ...] | None) -> dict[str, Any]:
+    """Waits until no more sensors turn up, and returns the status with their sites."""
+    client.wait_for_samples(FIRST_SAMPLE_TIMEOUT_S)
+    time.sleep(_SETTLE_S)
+    client.skip()
+    status = client.status()
+    for sensor, site in zip(status["sensors"], sites or (), strict=False):
+        sensor["site"] = site
+    if status["are_sites_guessed"] and not sites:
+        told = ", ".join(f"{sensor['name']} as {sensor['site']}" for sensor in status["sensors"])
+        warn([f"nobody said where the sensors are worn; took {told} (see --sites)"])
+    return status
+
+
+def _watch(
+    stack: ExitStack, client: CaptureClient, session: LiveSession, seconds: float | None
+) -> None:
+    console = Console(stderr=True, highlight=False)
+    screen = stack.enter_context(Live(console=console, auto_refresh=False, transient=True))
+    stop = stack.enter_context(interrupted())
+    begin = time.monotonic()
+    next_show = begin
+    while not stop.is_set() and (seconds is None or time.monotonic() - begin < seconds):
+        session.advance()
+        now = time.monotonic()
+        if now >= next_show and console.is_terminal:
+            screen.update(view(client.status(), session), refresh=True)
+            next_show = now + _SHOW_S
+        time.sleep(_LOOK_S)

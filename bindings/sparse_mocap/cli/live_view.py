@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What ``sparse-mocap live`` shows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from .live_session import LiveSession
+
+_COLOURS = {"streaming": "green", "live": "green", "failed": "red", "silent": "red"}
+
+
+def view(status: dict[str, Any], session: LiveSession) -> RenderableType:
+    """A capture's links and sensors, and how the reconstruction does."""
+    return Group(
+        *(_link(link) for link in status["links"]), _sensors(status, session), _fit(session)
+    )
+
+
+def _link(link: dict[str, Any]) -> Text:
+    state = link["state"]
+    text = Text(f"{link['opened_as'] or link['port']}  {link['driver']}  ")
+    text.append(state, _COLOURS.get(state, "yellow"))
+    counters = link["counters"]
+    odd = [f"{name} {count}" for name, count in counters.items() if count and name in _TOLD]
+    return text.append(f"  {link['message'] or link['device_message']}  {', '.join(odd)}")
+
+
+_TOLD = ("bad_checksums", "malformed", "resyncs", "overruns", "device_resets", "device_errors")
+
+
+def _sensors(status: dict[str, Any], session: LiveSession) -> Table:
+    table = Table(
+        "sensor", "device", "rate", "lost", "x m/s²", "y m/s²", "z m/s²", "state", box=None
+    )
+    for column in table.columns[2:7]:
+        column.justify = "right"
+    for sensor, site in zip(status["sensors"], session.sites, strict=False):
+        force = sensor["specific_force"]
+        values = ["", "", ""] if force is None else [f"{value:.2f}" for value in force]
+        total = sensor["samples"] + sensor["missing"]
+        state = sensor["state"]
+        table.add_row(
+            site, sensor["name"], f"{sensor['rate_hz']:.0f} Hz",
+            f"{100 * sensor['missing'] / max(total, 1):.1f} %", *values,
+            Text(state, _COLOURS.get(state, "yellow")),
+        )  # fmt: skip
+    return table
+
+
+def _fit(session: LiveSession) -> Text:
+    if not session.num_poses:
+        return Text("waiting for every sensor")
+    misfit = np.mean(session.misfits) if session.misfits else np.nan
+    return Text(
+        f"{session.num_poses} poses  misfit {misfit:.2f} m/s²  from movement to pose "
+        f"{1e3 * np.median(session.latencies_s):.0f} ms  of this computing "
+        f"{1e3 * np.median(session.step_s):.1f} ms"
+    )

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``sparse-mocap record``: sensors into a take."""
+
+from __future__ import annotations
+
+import shutil
+import threading
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import click
+
+from .. import write_take
+from ..capture.client import CaptureClient, start_capture
+from ..capture.config import CaptureConfig
+from ..capture.errors import CaptureError
+from ..capture.recording import RecordedTake, recording_to_take
+from ..capture.session import sessions
+from .capture_options import capture_options, config_of
+from .console import interrupted, status_line, warn
+from .options import FilePath, check_ending
+
+FIRST_SAMPLE_TIMEOUT_S = 20.0
+_LOOK_S = 0.1
+
+
+@click.command()
+@capture_options
+@click.option("-o", "--output", type=FilePath, required=True, help="The take file (.csv).")
+@click.option("--seconds", type=click.FloatRange(0.1, 86_400), help="Ends by itself.")
+@click.option(
+    "--attach", is_flag=False, flag_value=0, type=click.IntRange(min=0), metavar="[PID]",
+    help="Goes on with a capture that runs (the only one, or that of a process).",
+)  # fmt: skip
+@click.option(
+    "--recover", metavar="FOLDER", type=FilePath,
+    help="Makes the take from what a capture left that ended before its take was written.",
+)  # fmt: skip
+def record(
+    ports: tuple[str, ...],
+    driver: str | None,
+    baud: int,
+    options: dict[str, str],
+    sites: tuple[str, ...] | None,
+    output: Path,
+    seconds: float | None,
+    attach: int | None,
+    recover: Path | None,
+) -> None:
+    """Records sensors to a take, until Ctrl-C or for a time.
+
+    A process of its own captures, so nothing is lost when this one is killed: the recording goes
+    on, and --attach takes it up again. What arrives is kept in TAKE.capture beside the take until
+    the take is written.
+    """
+    check_ending(output, ".csv")
+    folder = output.with_suffix(".capture").absolute()
+    if recover is not None:
+        _write(output, recording_to_take(recover, sites=sites or ()))
+        if recover.absolute() == folder:
+            shutil.rmtree(folder)
+        return
+    if attach is not None:
+        with attached(attach) as client:
+            _write(output, _recorded(client, seconds, sites))
+            if client.folder == folder:
+                client.stop()
+                shutil.rmtree(folder)
+        return
+    config = config_of(ports, driver, baud, options, sites)
+    client = _started(config, folder)
+    try:
+        client.wait_for_samples(FIRST_SAMPLE_TIMEOUT_S)
+    except BaseException:
+        client.stop()
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    _write(output, _recorded(client, seconds, sites))
+    client.stop()
+    shutil.rmtree(folder)
+
+
+def _started(config: CaptureConfig, folder: Path) -> CaptureClient:
+    if not folder.parent.is_dir():
+        raise FileNotFoundError(2, "No such directory", str(folder.parent))
+    running = next((s for s in sessions() if s.folder == str(folder)), None)
+    if running is not None:
+        raise CaptureError(f"{folder}: is being recorded; see --attach {running.pid}")
+    if folder.exists() and any(folder.iterdir()):
+        raise CaptureError(
+            f"{folder}: holds a recording whose take was never written; make it with "
+            f"--recover {folder}, or remove the folder"
+        )
+    return start_capture(replace(config, must_record=True), folder)
+
+
+def attached(pid: int) -> CaptureClient:
+    """Attaches to the capture of a process; 0: to the only one."""
+    running = sessions()
+    chosen = [session for session in running if pid in (0, session.pid)]
+    if not chosen:
+        what = f"of process {pid} " if pid else ""
+        raise CaptureError(f"no capture {what}runs that could be attached to; start one by --port")
+    if len(chosen) > 1:
+        told = ", ".join(f"{s.pid} ({' '.join(s.ports)})" for s in chosen)
+        raise CaptureError(f"several captures run: name one by --attach PID; they are {told}")
+    return CaptureClient(chosen[0])
+
+
+def _recorded(
+    client: CaptureClient, seconds: float | None, sites: tuple[str, ...] | None
+) -> RecordedTake:
+    """Records until Ctrl-C or the end, and returns the take."""
+    goes_on = client.status()["recording"]
+    number = goes_on["number"] if goes_on and seconds is None else client.record(seconds)["number"]
+    with interrupted() as stop, status_line() as show:
+        _follow(client, stop, show)
+    client.stop_recording()
+    return recording_to_take(client.folder, number, sites or ())
+
+
+def _follow(client: CaptureClient, stop: threading.Event, show: Any) -> None:
+    told: dict[int, str] = {}
+    while not stop.is_set():
+        status = client.status()
+        recording = status["recording"]
+        if recording is None:
+            return
+        for index, link in enumerate(status["links"]):
+            message = f"{link['state']}: {link['message']}" if link["message"] else ""
+            if message != told.get(index, ""):
+                told[index] = message
+                warn([message or f"{link['opened_as']}: {link['state']} again"])
+        missing = sum(sensor["missing"] for sensor in status["sensors"])
+        show(
+            f"recording {recording['seconds']:.1f} s, {len(status['sensors'])} sensors, "
+            f"{recording['samples']} samples, {missing} lost (Ctrl-C ends it)"
+        )
+        time.sleep(_LOOK_S)
+
+
+def _write(output: Path, recorded: RecordedTake) -> None:
+    take = recorded.take
+    write_take(output, take)
+    warn(recorded.warnings)
+    count = sum(len(record.times_s) for record in take.sensors.values())
+    click.echo(
+        f"{output}: {len(take.sensors)} sensors, {count} samples, {take.end_s - take.begin_s:.1f} s"
+    )

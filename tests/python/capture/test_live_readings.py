@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Readings made as samples come are those made of the whole take at once."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from capture_support import some_take
+from sparse_mocap import FILTER_REACH_S, filtered_at
+from sparse_mocap.capture.live_readings import LONGEST_WAIT_S, LiveReadings
+from sparse_mocap.capture.sample_log import SAMPLE
+
+START_S = 100.0
+
+
+def streamed(silent_s: tuple[float, float] = (0.0, 0.0), has_clock: bool = True) -> np.ndarray:
+    take = some_take(4.0, 2)
+    parts = []
+    for index, record in enumerate(take.sensors.values()):
+        part = np.zeros(len(record.times_s), SAMPLE)
+        part["sensor"] = index
+        part["device_time_s"] = record.times_s + 7.0 * index if has_clock else np.nan
+        part["arrival_ns"] = (START_S + record.times_s) * 1e9
+        part["specific_force"] = record.specific_force
+        is_silent = (record.times_s >= silent_s[0]) & (record.times_s < silent_s[1])
+        parts.append(part if index == 0 else part[~is_silent])
+    samples = np.concatenate(parts)
+    return samples[np.argsort(samples["arrival_ns"], kind="stable")]
+
+
+def played(samples: np.ndarray, step_s: float) -> tuple[np.ndarray, np.ndarray, float]:
+    live = LiveReadings([0, 1], 25.0)
+    readings, late_s = [], 0.0
+    for now_s in np.arange(START_S, START_S + 4.0, step_s):
+        arrived = samples["arrival_ns"] * 1e-9
+        live.add(samples[(arrived > now_s - step_s) & (arrived <= now_s)])
+        for reading in live.ready(now_s):
+            readings.append(reading)
+            late_s = max(late_s, now_s - reading.time_s)
+    return (
+        np.array([reading.time_s for reading in readings]),
+        np.array([reading.specific_force for reading in readings]),
+        late_s,
+    )
+
+
+@pytest.mark.parametrize("step_s", [0.01, 0.07])
+@pytest.mark.parametrize("has_clock", [True, False])
+def test_they_are_what_the_whole_take_gives(step_s: float, has_clock: bool) -> None:
+    times, forces, late_s = played(streamed(has_clock=has_clock), step_s)
+    assert len(times) > 90
+    assert np.diff(times) == pytest.approx(1 / 25)
+    for index, record in enumerate(some_take(4.0, 2).sensors.values()):
+        whole = filtered_at(START_S + record.times_s, record.specific_force, times)
+        inner = times > START_S + FILTER_REACH_S
+        assert forces[inner, index] == pytest.approx(whole[inner], abs=1e-3)
+    assert late_s < FILTER_REACH_S + step_s + 0.05
+
+
+def test_a_silent_sensor_is_waited_for_and_then_left_out() -> None:
+    times, forces, late_s = played(streamed(silent_s=(1.5, 2.5)), 0.01)
+    is_silent = np.isnan(forces[:, 1]).all(axis=1)
+    silent_s = times[is_silent] - START_S
+    assert 1.5 < silent_s.min() < 1.75
+    assert 2.3 < silent_s.max() < 2.5
+    assert not np.isnan(forces[:, 0]).any()
+    assert late_s <= FILTER_REACH_S + LONGEST_WAIT_S + 0.02
+    assert np.diff(times) == pytest.approx(1 / 25)

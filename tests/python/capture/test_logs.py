@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The logs on disk: what was written is read, whatever a crash or a bad disk did to the file."""
+
+from __future__ import annotations
+
+import os
+import random
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sparse_mocap.capture.raw_log import MAGIC, Kind, RawLogWriter, Record, read_records
+from sparse_mocap.capture.sample_log import SAMPLE, SampleLogReader, SampleLogWriter
+
+
+def written(folder: Path, count: int = 40) -> list[Record]:
+    source = random.Random(1)
+    log = RawLogWriter(folder)
+    records = []
+    for number in range(count):
+        kind = source.choice(list(Kind))
+        payload = source.randbytes(source.choice([0, 1, 7, 60]))
+        if kind is Kind.BYTES:  # what looks like the begin of a record is no reason to stumble
+            payload += b"\xf5\x4c\x01"
+        log.append(kind, number % 3, number * 1000, payload)
+        records.append(Record(kind, number % 3, number * 1000, payload))
+    log.close()
+    return records
+
+
+def test_the_log_gives_back_what_was_appended(tmp_path: Path) -> None:
+    records = written(tmp_path)
+    assert list(read_records(tmp_path / "raw.log")) == records
+
+
+def test_a_log_torn_anywhere_gives_every_whole_record(tmp_path: Path) -> None:
+    records = written(tmp_path, 12)
+    data = (tmp_path / "raw.log").read_bytes()
+    ends, at = [], len(MAGIC)
+    for record in records:
+        at += 2 + 14 + len(record.payload) + 4
+        ends.append(at)
+    assert ends[-1] == len(data)
+    torn = tmp_path / "torn.log"
+    for length in range(len(MAGIC), len(data) + 1):
+        torn.write_bytes(data[:length])
+        whole = sum(end <= length for end in ends)
+        assert list(read_records(torn)) == records[:whole]
+
+
+def test_a_flipped_bit_costs_one_record(tmp_path: Path) -> None:
+    records = written(tmp_path, 12)
+    data = bytearray((tmp_path / "raw.log").read_bytes())
+    bad = tmp_path / "bad.log"
+    for at in range(len(MAGIC), len(data)):
+        data[at] ^= 0x10
+        bad.write_bytes(data)
+        data[at] ^= 0x10
+        found = list(read_records(bad))
+        assert len(found) == len(records) - 1
+        assert all(record in records for record in found)
+
+
+def test_records_longer_than_a_block_are_whole(tmp_path: Path) -> None:
+    log = RawLogWriter(tmp_path)
+    payload = os.urandom(200_000)
+    log.append_bytes(0, 5, payload)
+    log.append_event(1, 6, {"event": "state", "message": "ü"})
+    log.append_datagram(2, 7, "10.0.0.7:6969", b"\x00\x01")
+    log.close()
+    first, second, third = read_records(tmp_path / "raw.log")
+    assert first.payload == payload
+    assert second.event == {"event": "state", "message": "ü"}
+    assert third.datagram == ("10.0.0.7:6969", b"\x00\x01")
+
+
+def test_another_file_is_no_log(tmp_path: Path) -> None:
+    other = tmp_path / "other"
+    other.write_bytes(b"time_s,sensor,ax,ay,az\n")
+    with pytest.raises(ValueError, match="is no raw log"):
+        list(read_records(other))
+
+
+def test_a_log_is_never_overwritten(tmp_path: Path) -> None:
+    written(tmp_path, 3)
+    with pytest.raises(FileExistsError):
+        RawLogWriter(tmp_path)
+
+
+def some_samples(begin: int, count: int) -> np.ndarray:
+    samples = np.zeros(count, SAMPLE)
+    samples["counter"] = np.arange(begin, begin + count)
+    samples["specific_force"] = np.arange(begin, begin + count)[:, None]
+    return samples
+
+
+def test_a_reader_that_was_stalled_misses_nothing(tmp_path: Path) -> None:
+    log = SampleLogWriter(tmp_path)
+    reader, late = SampleLogReader(tmp_path), SampleLogReader(tmp_path, 30)
+    with closing(log), closing(reader), closing(late):
+        _check_both(log, reader, late)
+
+
+def _check_both(log: SampleLogWriter, reader: SampleLogReader, late: SampleLogReader) -> None:
+    counters: list[int] = []
+    for begin in range(0, 100, 10):
+        log.append(some_samples(begin, 10))
+        if begin % 30 == 0:
+            counters += reader.read()["counter"].tolist()
+    counters += reader.read(5)["counter"].tolist() + reader.read()["counter"].tolist()
+    assert counters == list(range(100))
+    assert late.read()["counter"].tolist() == list(range(30, 100))
+    assert len(reader.read()) == 0
+
+
+def test_a_torn_sample_is_not_read(tmp_path: Path) -> None:
+    log = SampleLogWriter(tmp_path)
+    log.append(some_samples(0, 3))
+    log.close()
+    path = tmp_path / "samples.bin"
+    data = path.read_bytes()
+    path.write_bytes(data[:-1])
+    with closing(SampleLogReader(tmp_path)) as reader:
+        assert reader.num_samples == len(reader.read()) == 2
+        path.write_bytes(data)
+        assert reader.read()["counter"].tolist() == [2]
