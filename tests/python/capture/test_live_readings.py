@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from capture_support import some_take
 from sparse_mocap import FILTER_REACH_S, filtered_at
-from sparse_mocap.capture.live_readings import LONGEST_WAIT_S, LiveReadings
+from sparse_mocap.capture.live_readings import LiveReadings
 from sparse_mocap.capture.sample_log import SAMPLE
 
 START_S = 100.0
+LONGEST_WAIT_S = 0.1
 
 
 def streamed(silent_s: tuple[float, float] = (0.0, 0.0), has_clock: bool = True) -> np.ndarray:
