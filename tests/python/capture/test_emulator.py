@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import serial
 from capture_support import DRIVER, some_take, until
-from sparse_mocap import StreamParser, Take, driver_names
+from sparse_mocap import ConfigError, StreamEncoder, StreamParser, Take, driver_names
 from sparse_mocap.capture import Emulator, Faults
 from sparse_mocap.capture.drivers import parsed, start_commands
 from sparse_mocap.capture.emulator import instants
@@ -181,3 +181,21 @@ def test_sensors_of_unlike_rates_are_each_sent_once() -> None:
     assert all(len(np.unique(group["sensor"])) == len(group) for _, group in groups)
     times = [time for time, _ in groups]
     assert times == sorted(times)
+
+
+def test_data_without_a_layout_make_the_host_ask_for_it() -> None:
+    parser, device = StreamParser("xsens_mt"), StreamEncoder("xsens_mt", ["a", "b"])
+    force = np.array([[0.0, 0.0, 9.8], [1.0, 2.0, 3.0]])
+    for counter in range(3):
+        assert len(parsed(parser, b"".join(device.encode(0.01 * counter, counter, force)))) == 0
+    asked = parser.take_replies()
+    assert [packet[2] for packet in asked] == [0x30, 0x0C, 0x10]
+    parser.feed(device.respond(b"".join(asked)))
+    samples = parsed(parser, b"".join(device.encode(0.03, 3, force)))
+    assert samples["specific_force"] == pytest.approx(force)
+    assert parser.counters["unconfigured"] == 3
+
+
+def test_a_driver_without_options_has_none_to_offer() -> None:
+    with pytest.raises(ConfigError, match="it has none at all"):
+        StreamParser("slimevr", rate_hz=100)
