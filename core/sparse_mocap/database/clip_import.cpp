@@ -52,8 +52,9 @@ SourceSkeleton described(const Skeleton& source, const HumanoidMapping& mapping)
   skeleton.joints = joint_names(source, mapping);
   std::string identity = std::to_string(mapping.unit_scale);
   for (const Joint& joint : source.joints())
-    identity += "\n" + joint.name + " " + std::to_string(joint.parent);
-  for (const auto& [standard, name] : skeleton.joints) identity += "\n" + standard + " " + name;
+    identity.append("\n").append(joint.name).append(" ").append(std::to_string(joint.parent));
+  for (const auto& [standard, name] : skeleton.joints)
+    identity.append("\n").append(standard).append(" ").append(name);
   skeleton.id = checksum(std::as_bytes(std::span(identity)));
   return skeleton;
 }

@@ -78,7 +78,7 @@ class PointsFinder {
   // A body without a neck joint: the height of the shoulders on the way from chest to head.
   Vec3 neck_base() const {
     if (has(lowerneck)) return pivot(lowerneck);
-    const Vec3 shoulders = 0.5 * (pivot(lhumerus) + pivot(rhumerus));
+    Vec3 shoulders = 0.5 * (pivot(lhumerus) + pivot(rhumerus));
     if (!has(head)) return shoulders;
     const Vec3 below = has(thorax) ? pivot(thorax) : pivot(root);
     const Vec3 way = pivot(head) - below;

@@ -58,7 +58,7 @@ void StreamParser::reset() {
 
 std::vector<Bytes> StreamParser::take_replies() { return std::exchange(replies_, {}); }
 
-int StreamParser::add_sensor(std::string name) {
+int StreamParser::add_sensor(const std::string& name) {
   if (sensor_names_.size() == kMostSensors) {
     ++count(Count::too_many_sensors);
     return -1;
@@ -67,7 +67,7 @@ int StreamParser::add_sensor(std::string name) {
   return static_cast<int>(sensor_names_.size()) - 1;
 }
 
-void StreamParser::rename_sensor(int sensor, std::string name) {
+void StreamParser::rename_sensor(int sensor, const std::string& name) {
   sensor_names_[static_cast<std::size_t>(sensor)] = printable(name);
 }
 

@@ -52,8 +52,8 @@ class StreamParser {
   virtual void restart() = 0;
 
   // The index of a new sensor, -1 when there are too many (which is counted).
-  int add_sensor(std::string name);
-  void rename_sensor(int sensor, std::string name);
+  int add_sensor(const std::string& name);
+  void rename_sensor(int sensor, const std::string& name);
   // Hands out a sample unless it is implausible.
   void emit(const Sample& sample);
   void tell(std::string_view message);
