@@ -6,11 +6,14 @@ import atexit
 import bpy
 from bpy.app.handlers import persistent
 
+from ..scene.live import stop_ticking
 from ..session import job
+from ..session import live as live_session
 from ..session.database import databases
 from ..session.imported import glances
+from ..session.surroundings import surroundings
 from ..session.take import takes
-from . import clips, database, import_motion, job_operator, mapping, reconstruct, take
+from . import clips, database, import_motion, job_operator, live, mapping, reconstruct, take
 
 CLASSES = (
     *job_operator.CLASSES,
@@ -20,6 +23,7 @@ CLASSES = (
     *clips.CLASSES,
     *take.CLASSES,
     *reconstruct.CLASSES,
+    *live.CLASSES,
 )
 
 
@@ -27,11 +31,15 @@ CLASSES = (
 def _before_load(*_: object) -> None:
     """Another file is about to be opened: what runs for this one ends."""
     job.cancel_current()
+    stop_ticking()
+    live_session.end()
 
 
 def _end_all() -> None:
     """No thread of ours is left when Python ends or the add-on goes."""
     job.cancel_current()
+    live_session.end()
+    surroundings.wait(1.0)
     databases.close()
     takes.close()
     glances.close()
@@ -47,6 +55,7 @@ def register() -> None:
 
 def unregister() -> None:
     """Stop what runs and take the operators away."""
+    stop_ticking()
     _end_all()
     atexit.unregister(_end_all)
     bpy.app.handlers.load_pre.remove(_before_load)

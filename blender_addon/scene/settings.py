@@ -7,15 +7,26 @@ from bpy.props import (
     CollectionProperty,
     EnumProperty,
     FloatProperty,
+    IntProperty,
     PointerProperty,
     StringProperty,
 )
-from bpy.types import PropertyGroup, Scene
+from bpy.types import Context, PropertyGroup, Scene
+
+from ..session.surroundings import surroundings
 
 PRESETS = (
     ("default", "Default", "Tuned for smooth, steady motion"),
     ("paper", "Paper", "The constants of the publication (Tautges et al. 2011)"),
 )
+
+
+def _ports(_: PropertyGroup, __: Context, text: str) -> list[str]:
+    return [port.port for port in surroundings.view.ports if text.lower() in port.port.lower()]
+
+
+def _drivers(_: PropertyGroup, __: Context, text: str) -> list[str]:
+    return [driver for driver in surroundings.view.drivers if text.lower() in driver]
 
 
 class SPARSEMOCAP_PG_source(PropertyGroup):
@@ -89,6 +100,28 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
     reuse_armature: BoolProperty(
         name="Reuse armature",
         description="Add the action to a Sparse Mocap armature of this scene, not to a new one",
+    )
+    port: StringProperty(
+        name="Port",
+        description="The serial port of the sensors, or udp://HOST:PORT",
+        search=_ports,
+        search_options={"SUGGESTION"},
+    )
+    driver: StringProperty(
+        name="Driver", description="What the sensors speak", search=_drivers, default="xsens_mt"
+    )
+    baud: IntProperty(
+        name="Baud", description="Bits a second of the serial port", default=115200, min=1200
+    )
+    driver_options: StringProperty(
+        name="Options", description="The driver's options, for example: rate_hz=100, output=mtdata"
+    )
+    sites: StringProperty(
+        name="Worn on",
+        description=(
+            "Where the sensors are worn, in their order and separated by commas, for example: "
+            "left_wrist, right_wrist. Empty: by their names"
+        ),
     )
 
 

@@ -16,6 +16,14 @@ MODULES = (
     "sparse_mocap.reconstruction",
     "sparse_mocap.take",
 )
+CAPTURE_MODULES = (
+    "sparse_mocap.capture.client",
+    "sparse_mocap.capture.drivers",
+    "sparse_mocap.capture.live_readings",
+    "sparse_mocap.capture.ports",
+    "sparse_mocap.capture.recording",
+    "sparse_mocap.capture",
+)
 
 
 def core() -> ModuleType:
@@ -43,18 +51,33 @@ def _found() -> tuple[ModuleType | None, str]:
         return None, f"The Sparse Mocap core does not load, reinstall the add-on: {one_line(error)}"
 
 
+def capture() -> ModuleType:
+    """The package's part for real sensors; raises InputError when it cannot be used."""
+    core()
+    try:
+        return _with_vendor(CAPTURE_MODULES)
+    except ImportError as error:
+        raise InputError(
+            f"Real sensors need the Python package {error.name}: install it for Blender"
+        ) from error
+
+
 def _imported() -> ModuleType:
     """The package, with all the modules of it that the add-on uses."""
+    _with_vendor(MODULES)
+    return sys.modules["sparse_mocap"]
+
+
+def _with_vendor(names: tuple[str, ...]) -> ModuleType:
+    """Imports modules, some of which may be in the vendor folder, and returns the last."""
     where = str(VENDOR)
     if VENDOR.is_dir():
         sys.path.insert(0, where)
     try:
-        for name in MODULES:
-            importlib.import_module(name)
+        return [importlib.import_module(name) for name in names][-1]
     finally:
         if where in sys.path:
             sys.path.remove(where)
-    return sys.modules["sparse_mocap"]
 
 
 def _not_there(name: str) -> str:

@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import clips, database, import_motion, mapping, reconstruct, take
+from . import clips, database, import_motion, live, mapping, reconstruct, take
 from .step import forget_timers
 
 CLASSES = (
@@ -11,6 +11,7 @@ CLASSES = (
     *clips.CLASSES,
     *take.CLASSES,
     *reconstruct.CLASSES,
+    *live.CLASSES,
     *mapping.CLASSES,
 )
 

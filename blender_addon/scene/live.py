@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The newest live pose on an armature, without keys, while everything else stays as it is."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy.types import Context, Object
+
+from ..session import live
+from ..session.errors import InputError
+from ..session.live_poses import Pose
+from . import compat
+from .armature import (
+    editable,
+    is_ours,
+    new_armature,
+    reusable_armature,
+    rig_of,
+    units_per_metre,
+    use_quaternions,
+)
+from .axes import bone_quaternions, to_blender
+
+TICK_S = 0.02
+_PANEL_S = 0.25
+
+_target = ""  # the armature's name: references do not outlive an undo
+_bones: list[str] = []
+_next_panel_s = 0.0
+
+
+def live_armature(context: Context, skeleton: Any) -> Object:
+    """The armature that is to move: the one that is there, where it can, else a new one.
+
+    An action that it plays is taken off it and stays in the file. Raises InputError.
+    """
+    rig = None
+    try:
+        armature = reusable_armature(context)
+        if armature.animation_data is None or not armature.animation_data.nla_tracks:
+            rig = rig_of(armature, skeleton)
+    except InputError:  # there is none, or none that fits
+        rig = None
+    if rig is None:
+        rig = new_armature(context, skeleton)
+    armature = editable(rig.armature)
+    data = armature.animation_data
+    if data is not None and data.action is not None:
+        data.action.use_fake_user = True
+        data.action = None
+    use_quaternions(armature)
+    return armature
+
+
+def follow(armature: Object, bones: list[str]) -> None:
+    """Let the armature show the live poses; bones: by joint."""
+    global _target
+    _target, _bones[:] = armature.name, bones
+    ensure_ticking()
+
+
+def followed() -> Object | None:
+    """The armature that shows the live poses, None when there is none any more."""
+    armature = bpy.data.objects.get(_target) if _target else None
+    return armature if is_ours(armature) and armature.library is None else None
+
+
+def ensure_ticking() -> None:
+    """Let tick() be called while a session goes on; another file ends that."""
+    if not bpy.app.timers.is_registered(_tick_or_end):
+        bpy.app.timers.register(_tick_or_end, first_interval=TICK_S)
+
+
+def stop_ticking() -> None:
+    """Leave no timer behind."""
+    global _target
+    _target = ""
+    if bpy.app.timers.is_registered(_tick_or_end):
+        bpy.app.timers.unregister(_tick_or_end)
+
+
+def tick() -> Pose | None:
+    """Put the newest pose onto the armature, and return it when there was one."""
+    session = live.current()
+    if session is None or not session.is_live_wanted or compat.is_rendering():
+        return None
+    armature = followed()
+    if armature is None:  # deleted, or its making was undone
+        session.leave_live()
+        return None
+    if armature.mode == "EDIT":
+        return None
+    pose = session.newest_pose()
+    if pose is not None:
+        _show(armature, pose)
+    return pose
+
+
+def _tick_or_end() -> float | None:
+    global _next_panel_s
+    session = live.current()
+    if session is None:
+        return None
+    pose = tick()
+    if pose is not None or time.monotonic() >= _next_panel_s or not session.is_running:
+        _next_panel_s = time.monotonic() + _PANEL_S
+        compat.redraw_views(bpy.context)
+    return TICK_S if session.is_running else None
+
+
+def _show(armature: Object, pose: Pose) -> None:
+    bones = armature.data.bones
+    if any(name not in bones for name in _bones):
+        return  # the animator is rebuilding it
+    scale = units_per_metre(bpy.context.scene)
+    for joint, name in enumerate(_bones):
+        rest = np.array(bones[name].matrix_local.to_3x3())
+        posed = armature.pose.bones[name]
+        posed.rotation_quaternion = bone_quaternions(pose.rotations[joint], rest)
+        if joint == 0:
+            head = np.array(bones[name].head_local)
+            posed.location = (to_blender(pose.root_position) * scale - head) @ rest

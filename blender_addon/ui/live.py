@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Real sensors in the sidebar. Only what is known already is drawn."""
+
+from __future__ import annotations
+
+from bpy.types import Context, Panel, UILayout
+
+from ..scene.settings import settings_of
+from ..session import live, sensors
+from ..session.core import missing_reason
+from ..session.live import LiveSession, LiveState
+from ..session.surroundings import surroundings
+from . import text
+from .step import StepPanel, action_button, redraw_soon
+
+_ICONS = {"live": "RADIOBUT_ON", "silent": "RADIOBUT_OFF"}
+
+
+class SPARSEMOCAP_PT_live(StepPanel, Panel):
+    """The sensors that are connected, or how to connect some."""
+
+    bl_idname = "SPARSEMOCAP_PT_live"
+    bl_label = "Live Sensors"
+    bl_order = 4
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Context) -> bool:
+        """Only where it can be done."""
+        return not missing_reason()
+
+    def draw_header_preset(self, context: Context) -> None:
+        """Whether something is being recorded, also while the panel is closed."""
+        session = live.current()
+        if session is not None and session.is_running:
+            is_recording = session.state.recording is not None
+        else:
+            captures = surroundings.peek().captures
+            is_recording = any(found.recording_s is not None for found in captures)
+            if surroundings.is_looking:
+                redraw_soon()
+        if is_recording:
+            self.layout.label(text="", icon="REC")
+
+    def draw(self, context: Context) -> None:
+        """The port, or what its sensors do."""
+        session = live.current()
+        if session is not None and session.is_running:
+            _session(self.layout, context, session)
+            return
+        if session is not None and session.state.error:
+            text.error(self.layout, context, session.state.error)
+        _choices(self.layout, context)
+        _last_take(self.layout, context)
+
+
+def _choices(layout: UILayout, context: Context) -> None:
+    view, settings = surroundings.view, settings_of(context.scene)
+    if view.error:
+        text.error(layout, context, view.error)
+    for found in view.captures:
+        box = layout.box()
+        text.paragraph(
+            box, context, found.text, icon="INFO" if found.recording_s is None else "REC"
+        )
+        box.operator("sparse_mocap.attach_sensors", icon="LINKED").pid = found.pid
+    row = layout.row(align=True)
+    row.prop(settings, "port", icon="PLUGIN")
+    row.operator("sparse_mocap.find_sensors", text="", icon="FILE_REFRESH")
+    known = next((port for port in view.ports if port.port == settings.port), None)
+    if known is not None and known.description:
+        text.paragraph(layout, context, known.description)
+    column = layout.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    for name in ("driver", "baud", "driver_options", "sites"):
+        column.prop(settings, name)
+    row = layout.row()
+    row.scale_y = 1.5
+    row.enabled = bool(settings.port)
+    row.operator("sparse_mocap.connect_sensors", icon="LINKED")
+
+
+def _session(layout: UILayout, context: Context, session: LiveSession) -> None:
+    state = session.state
+    row = layout.row()
+    row.label(text=session.label, icon="LINKED" if state.is_connected else "SORTTIME")
+    row.operator("sparse_mocap.disconnect_sensors", text="", icon="X")
+    if not state.is_connected:
+        layout.label(text="Connecting")
+        return
+    for link in state.links:
+        if link["state"] != "streaming" or link["message"]:
+            said = link["message"] or f"{link['port']}: {link['state']}"
+            text.paragraph(layout, context, said, icon="INFO")
+    _sensors(layout, state)
+    _live(layout, context, session)
+    _recording(layout, context, state)
+
+
+def _sensors(layout: UILayout, state: LiveState) -> None:
+    column = layout.box().column(align=True)
+    column.scale_y = 0.85
+    for sensor in state.sensors:
+        split = column.split(factor=0.5)
+        name = str(sensor["site"] or sensor["name"]).replace("_", " ")
+        split.label(text=name, icon=_ICONS.get(sensor["state"], "ERROR"))
+        lost = f", {sensor['missing']} lost" if sensor["missing"] else ""
+        silent = "silent" if sensor["state"] != "live" else f"{sensor['rate_hz']:.0f} Hz"
+        split.label(text=silent + lost)
+    if not state.sensors:
+        column.label(text="No sensor is heard yet", icon="SORTTIME")
+
+
+def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
+    state, quality = session.state, session.state.quality
+    has_database = bool(settings_of(context.scene).database)
+    if session.is_live_wanted:
+        row = layout.row()
+        row.scale_y = 1.5
+        row.operator("sparse_mocap.leave_live", icon="PAUSE", depress=True)
+    else:
+        is_ready = has_database and bool(state.sensors)
+        action_button(layout, "sparse_mocap.go_live", "PLAY", sensors.GOING_LIVE, is_ready=is_ready)
+        if not has_database:
+            text.paragraph(layout, context, "Choose a motion database first", icon="INFO")
+    if state.warning and session.is_live_wanted:
+        text.error(layout, context, state.warning)
+    if session.is_live_wanted and quality.num_poses:
+        rows = [
+            ("Misfit", f"{quality.misfit_mps2:.2f} m/s²"),
+            ("Latency", f"{1e3 * quality.latency_s:.0f} ms"),
+        ]
+        dropped = quality.num_skipped + state.num_dropped
+        if dropped:
+            rows.append(("Dropped", f"{dropped} poses"))
+        text.facts(layout, rows)
+
+
+def _recording(layout: UILayout, context: Context, state: LiveState) -> None:
+    if state.recording is None:
+        row = layout.row()
+        row.scale_y = 1.5
+        row.operator("sparse_mocap.record_take", icon="REC")
+    else:
+        action_button(
+            layout, "sparse_mocap.stop_take", "SNAP_FACE", sensors.STOPPING, is_ready=True
+        )
+        text.paragraph(
+            layout,
+            context,
+            f"Recording: {text.duration(state.recording['seconds'])}. "
+            "It goes on even if Blender ends",
+            icon="REC",
+        )
+    _last_take(layout, context)
+
+
+def _last_take(layout: UILayout, context: Context) -> None:
+    if sensors.last_takes:
+        text.paragraph(layout, context, f"Kept: {sensors.last_takes[0]}", icon="FILE_TICK")
+
+
+CLASSES = (SPARSEMOCAP_PT_live,)

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An emulator in a thread, and captures with a runtime folder of their own. No Blender here."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+DRIVER, OPTIONS = "xsens_mt", "output=mtdata"
+
+
+@contextmanager
+def emulated(take: Any) -> Iterator[str]:
+    """The port at which the take is played from the moment somebody opens it."""
+    from sparse_mocap.capture import Emulator
+
+    emulator, stop = Emulator(take, DRIVER, {"output": "mtdata"}), threading.Event()
+    [port] = emulator.plug_in()
+    thread = threading.Thread(target=lambda: emulator.run(stop.is_set))
+    thread.start()
+    try:
+        yield port
+    finally:
+        stop.set()
+        thread.join()
+        emulator.close()
+
+
+@contextmanager
+def own_runtime(folder: Path) -> Iterator[None]:
+    """Captures are looked for in that folder alone, and ended afterwards."""
+    from sparse_mocap.capture import CaptureClient, CaptureError
+    from sparse_mocap.capture.session import FOLDER_VARIABLE, sessions
+
+    before = os.environ.get(FOLDER_VARIABLE)
+    os.environ[FOLDER_VARIABLE] = str(folder)
+    try:
+        yield
+    finally:
+        for session in sessions():
+            with suppress(CaptureError):
+                CaptureClient(session).stop()
+        os.environ.pop(FOLDER_VARIABLE)
+        if before is not None:
+            os.environ[FOLDER_VARIABLE] = before
+
+
+def until(is_so: Callable[[], Any], timeout_s: float = 20.0) -> None:
+    """Wait until it is so; fails when it never is."""
+    end = time.monotonic() + timeout_s
+    while not is_so():
+        assert time.monotonic() < end, "it never happened"
+        time.sleep(0.01)
+
+
+def is_alive(pid: int) -> bool:
+    """Whether the process is there."""
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True

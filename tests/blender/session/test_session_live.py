@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("sparse_mocap._core")
+pytest.importorskip("serial")
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import sparse_mocap  # noqa: E402
+from live_support import DRIVER, OPTIONS, emulated, is_alive, own_runtime, until  # noqa: E402
+from sparse_mocap.capture import CaptureClient  # noqa: E402
+from sparse_mocap.demo.generator import generate_library  # noqa: E402
+
+from blender_addon.session import live, sensors  # noqa: E402
+from blender_addon.session.database import open_database  # noqa: E402
+from blender_addon.session.errors import InputError  # noqa: E402
+from blender_addon.session.live_poses import MOST_BEHIND, LivePoses  # noqa: E402
+from blender_addon.session.surroundings import Surroundings  # noqa: E402
+
+SITES = ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A database's path, and a take of one of its motions."""
+    folder = tmp_path_factory.mktemp("made")
+    files = generate_library(folder)
+    path = folder / "small.smdb"
+    sparse_mocap.build_database(files[:40:10], path)
+    motion, _ = sparse_mocap.standard_motion(sparse_mocap.read_motion(files[0])[0])
+    return str(path), sparse_mocap.simulated(motion, SITES, 100.0)
+
+
+@pytest.fixture(autouse=True)
+def runtime(tmp_path):
+    folder = tmp_path / "runtime"
+    folder.mkdir(mode=0o700)
+    with own_runtime(folder):
+        yield
+        live.end()
+
+
+@pytest.fixture
+def port(made):
+    with emulated(made[1]) as port:
+        yield port
+
+
+def _connected(port, tmp_path, **how):
+    chosen = sensors.Port(port, DRIVER, options=OPTIONS, sites=", ".join(SITES), **how)
+    live.begin(sensors.connecting(chosen, tmp_path / "takes"))
+    session = live.current()
+    until(lambda: session.state.error or len(session.state.sensors) == len(SITES))
+    assert session.state.error == ""
+    return session
+
+
+def test_live_poses_are_those_of_the_take(made, port, tmp_path):
+    database = open_database(made[0])
+    session = _connected(port, tmp_path)
+    session.go_live(database, "default")
+    poses = []
+
+    def has_enough():
+        pose = session.newest_pose()
+        if pose is not None:
+            poses.append(pose)
+        return len(poses) >= 40
+
+    until(has_enough)
+    assert session.newest_pose() is None or len(poses) >= 40
+    numbers = [pose.number for pose in poses]
+    assert numbers == sorted(set(numbers))
+    turned = np.ptp([pose.rotations for pose in poses], axis=0).max()
+    assert turned > 0.1
+    assert np.allclose(np.linalg.norm(poses[-1].rotations, axis=-1), 1.0)
+    until(lambda: session.state.quality.num_poses >= 40)
+    quality = session.state.quality
+    assert 0.0 < quality.latency_s <= quality.worst_latency_s
+    assert 0.0 < quality.misfit_mps2 < 10.0
+    session.leave_live()
+    until(lambda: not session.state.is_live)
+
+
+def test_a_recording_becomes_a_take_and_a_performance(made, port, tmp_path):
+    session = _connected(port, tmp_path)
+    session.record().result(5)
+    until(lambda: session.state.recording and session.state.recording["samples"] > 600)
+    job = sensors.stopping_job(session, made[0], tmp_path / "takes", "default")
+    kept = job.run()
+    assert kept.reason == ""
+    assert kept.warnings == ()
+    assert Path(kept.path).parent == tmp_path / "takes"
+    take = sparse_mocap.read_take(kept.path)
+    assert take.sites == SITES
+    assert take.end_s - take.begin_s > 1.0
+    assert kept.performance.motion.num_frames > 20
+    until(lambda: session.state.recording is None)
+
+
+def test_a_take_is_kept_though_there_is_no_database(port, tmp_path):
+    session = _connected(port, tmp_path)
+    session.record().result(5)
+    until(lambda: session.state.recording and session.state.recording["samples"] > 100)
+    kept = sensors.stopping_job(session, "", tmp_path / "takes", "default").run()
+    assert kept.performance is None
+    assert "database" in kept.reason
+    assert sparse_mocap.read_take(kept.path).sites == SITES
+
+
+def test_closing_leaves_no_capture(port, tmp_path):
+    session = _connected(port, tmp_path)
+    [capture] = CaptureClient.running()
+    assert session.close()
+    until(lambda: not is_alive(capture.pid))
+    assert CaptureClient.running() == []
+    assert list((tmp_path / "takes").iterdir()) == []
+
+
+def test_a_recording_outlives_the_session_and_is_found(port, tmp_path):
+    session = _connected(port, tmp_path)
+    session.record().result(5)
+    live.end()
+    assert not session.is_running
+    around = Surroundings()
+    around.look()
+    around.wait(10)
+    [found] = around.view.captures
+    assert found.recording_s is not None
+    assert "recording" in found.text
+    live.begin(sensors.attaching(found.session))
+    again = live.current()
+    until(lambda: again.state.recording is not None)
+    kept = sensors.stopping_job(again, "", tmp_path / "takes", "default").run()
+    assert sparse_mocap.read_take(kept.path).sites == SITES
+    live.end()
+    until(lambda: not is_alive(found.pid))
+
+
+def test_a_held_capture_does_not_hold_the_session(port, tmp_path):
+    session = _connected(port, tmp_path)
+    [capture] = CaptureClient.running()
+    os.kill(capture.pid, signal.SIGSTOP)
+    try:
+        begin = time.monotonic()
+        session.close()
+        assert time.monotonic() - begin < 2 * live.STOP_WITHIN_S
+    finally:
+        os.kill(capture.pid, signal.SIGCONT)
+    until(lambda: not is_alive(capture.pid))
+
+
+def test_a_killed_capture_is_told_in_a_line(port, tmp_path):
+    session = _connected(port, tmp_path)
+    [capture] = CaptureClient.running()
+    os.kill(capture.pid, signal.SIGKILL)
+    until(lambda: not session.is_running)
+    assert "ended" in session.state.error
+    assert "\n" not in session.state.error
+    with pytest.raises(InputError, match="Connect"):
+        session.record().result(1)
+
+
+def test_a_port_that_is_not_there_is_told_in_a_line(tmp_path):
+    live.begin(sensors.connecting(sensors.Port("/dev/not-there", DRIVER), tmp_path / "takes"))
+    session = live.current()
+    until(lambda: not session.is_running)
+    assert "no such port" in session.state.error
+    assert "\n" not in session.state.error
+    assert CaptureClient.running() == []
+
+
+@pytest.mark.parametrize(
+    ("port", "said"),
+    [
+        (sensors.Port("", DRIVER), "port"),
+        (sensors.Port("/dev/x", "nonsense"), "nonsense"),
+        (sensors.Port("/dev/x", DRIVER, sites="nose"), "nose"),
+        (sensors.Port("/dev/x", DRIVER, options="fast"), "fast"),
+    ],
+)
+def test_bad_choices_are_told_before_anything_starts(port, said, tmp_path):
+    with pytest.raises(ValueError, match=said):
+        sensors.connecting(port, tmp_path / "takes")
+    assert not (tmp_path / "takes").exists()
+
+
+def test_one_session_at_a_time(port, tmp_path):
+    _connected(port, tmp_path)
+    with pytest.raises(InputError, match="Disconnect"):
+        _connected(port, tmp_path)
+
+
+def test_a_solver_that_is_too_slow_begins_anew(made):
+    poses = LivePoses(open_database(made[0]).motions, dict(enumerate(SITES)), "default")
+
+    class Late:
+        def add(self, samples):
+            pass
+
+        def ready(self, now_s):
+            reading = type("Reading", (), {"time_s": 0.0, "specific_force": np.zeros((4, 3))})
+            return [reading] * (MOST_BEHIND + 1)
+
+    poses._readings = Late()
+    poses.advance(None)
+    assert poses.quality().num_skipped == MOST_BEHIND
