@@ -3,7 +3,11 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
+import shutil
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -65,3 +69,19 @@ def is_alive(pid: int) -> bool:
     except ProcessLookupError:
         return False
     return True
+
+
+def need_serial(folder: Path) -> None:
+    """Make pyserial importable, also where only the Python on the path has it.
+
+    Raises ImportError when none has.
+    """
+    if importlib.util.find_spec("serial") is not None:
+        return
+    code = "import serial; print(serial.__path__[0])"
+    python = shutil.which("python") or "python3"
+    found = subprocess.run([python, "-c", code], capture_output=True, text=True, check=False)
+    if found.returncode != 0:
+        raise ImportError("pyserial is not installed")
+    (folder / "serial").symlink_to(found.stdout.strip())
+    sys.path.append(str(folder))

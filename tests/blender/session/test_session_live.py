@@ -12,16 +12,16 @@ pytest.importorskip("sparse_mocap._core")
 pytest.importorskip("serial")
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-import sparse_mocap  # noqa: E402
-from live_support import DRIVER, OPTIONS, emulated, is_alive, own_runtime, until  # noqa: E402
-from sparse_mocap.capture import CaptureClient  # noqa: E402
-from sparse_mocap.demo.generator import generate_library  # noqa: E402
+import sparse_mocap
+from live_support import DRIVER, OPTIONS, emulated, is_alive, own_runtime, until
+from sparse_mocap.capture import CaptureClient
+from sparse_mocap.demo.generator import generate_library
 
-from blender_addon.session import live, sensors  # noqa: E402
-from blender_addon.session.database import open_database  # noqa: E402
-from blender_addon.session.errors import InputError  # noqa: E402
-from blender_addon.session.live_poses import MOST_BEHIND, LivePoses  # noqa: E402
-from blender_addon.session.surroundings import Surroundings  # noqa: E402
+from blender_addon.session import live, sensors
+from blender_addon.session.database import open_database
+from blender_addon.session.errors import InputError
+from blender_addon.session.live_poses import MOST_BEHIND, LivePoses
+from blender_addon.session.surroundings import Surroundings
 
 SITES = ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
 

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Connects to sensors and ends Blender: live_quit_script.py -- HOW PORT FOLDER SERIAL_FOLDER"""
+
+import os
+import sys
+from pathlib import Path
+
+import bpy
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
+sys.path.append(str(ROOT / "bindings"))
+HOW, PORT, FOLDER, SERIAL = sys.argv[sys.argv.index("--") + 1 :]
+sys.path.append(SERIAL)
+
+from live_support import DRIVER, OPTIONS, until  # noqa: E402
+
+import blender_addon  # noqa: E402 - found by the lines above
+from blender_addon.session import live, sensors  # noqa: E402
+
+blender_addon.register()
+live.begin(sensors.connecting(sensors.Port(PORT, DRIVER, options=OPTIONS), Path(FOLDER)))
+session = live.current()
+until(lambda: session.state.error or session.state.is_connected)
+assert not session.state.error, session.state.error
+from sparse_mocap.capture import CaptureClient  # noqa: E402
+
+print("connected", CaptureClient.running()[0].pid, flush=True)
+if HOW == "crash":
+    os.abort()
+bpy.ops.wm.quit_blender()
