@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An emulator in a thread, and captures with a runtime folder of their own. No Blender here."""
+"""An emulator in a thread, and captures with a runtime folder of their own. No bpy here."""
 
 from __future__ import annotations
 
+import atexit
 import importlib.util
 import os
 import shutil
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +36,23 @@ def emulated(take: Any) -> Iterator[str]:
         stop.set()
         thread.join()
         emulator.close()
+
+
+def repeated(take: Any, times: int) -> Any:
+    """The same readings that often, one after the other."""
+    import numpy as np
+    from sparse_mocap import SensorRecord, Take
+
+    step_s = take.end_s - take.begin_s + 0.01
+    return Take(
+        {
+            site: SensorRecord(
+                np.concatenate([record.times_s + step_s * index for index in range(times)]),
+                np.tile(record.specific_force, (times, 1)),
+            )
+            for site, record in take.sensors.items()
+        }
+    )
 
 
 @contextmanager
@@ -71,17 +91,23 @@ def is_alive(pid: int) -> bool:
     return True
 
 
-def need_serial(folder: Path) -> None:
-    """Make pyserial importable, also where only the Python on the path has it.
+@cache
+def serial_folder() -> Path:
+    """A folder from which pyserial can be imported, and now is; for Blenders without it.
 
-    Raises ImportError when none has.
+    Raises Skipped when there is none.
     """
+    from support import Skipped
+
+    folder = Path(tempfile.mkdtemp(prefix="sparse_mocap_serial_"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
     if importlib.util.find_spec("serial") is not None:
-        return
+        return folder
     code = "import serial; print(serial.__path__[0])"
     python = shutil.which("python") or "python3"
     found = subprocess.run([python, "-c", code], capture_output=True, text=True, check=False)
     if found.returncode != 0:
-        raise ImportError("pyserial is not installed")
+        raise Skipped("pyserial is not installed")
     (folder / "serial").symlink_to(found.stdout.strip())
     sys.path.append(str(folder))
+    return folder

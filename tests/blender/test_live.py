@@ -5,16 +5,14 @@ from __future__ import annotations
 
 import os
 import subprocess
-import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cache
 from pathlib import Path
 
 import bpy
 import numpy as np
-from live_support import DRIVER, OPTIONS, emulated, is_alive, need_serial, own_runtime, until
+from live_support import DRIVER, OPTIONS, emulated, is_alive, own_runtime, serial_folder, until
 from support import (
     SITES,
     Skipped,
@@ -30,22 +28,12 @@ from support import (
 import blender_addon
 
 
-@cache
-def _serial_folder() -> Path:
-    folder = Path(tempfile.mkdtemp(prefix="sparse_mocap_serial_"))
-    try:
-        need_serial(folder)
-    except ImportError as error:
-        raise Skipped(str(error)) from error
-    return folder
-
-
 @contextmanager
 def _connected(tmp_path: Path) -> Iterator[object]:
     """A session with an emulator that plays the library's take, beside a saved file."""
     if os.name == "nt":
         raise Skipped("there are no pseudo-terminals")
-    _serial_folder()
+    serial_folder()
     import sparse_mocap
 
     (tmp_path / "runtime").mkdir(mode=0o700)
@@ -233,7 +221,7 @@ def test_quitting_or_crashing_leaves_no_capture(tmp_path):
             emulated(sparse_mocap.read_take(library().take)) as port,
         ):
             command = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1"]
-            arguments = [how, port, str(tmp_path / how), str(_serial_folder())]
+            arguments = [how, port, str(tmp_path / how), str(serial_folder())]
             done = subprocess.run(
                 [*command, "--python", str(script), "--", *arguments],
                 capture_output=True, text=True, timeout=60,
@@ -246,7 +234,7 @@ def test_quitting_or_crashing_leaves_no_capture(tmp_path):
 
 
 def test_nothing_connected_is_said_in_one_line():
-    _serial_folder()
+    serial_folder()
     for operator in ("record_take", "go_live", "stop_take", "leave_live"):
         assert "Connect" in error_of(getattr(bpy.ops.sparse_mocap, operator))
     assert "port" in error_of(bpy.ops.sparse_mocap.connect_sensors)

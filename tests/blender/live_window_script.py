@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Goes live in a Blender with a window: live_window_script.py -- PORT DATABASE FOLDER SERIAL
+
+Pictures of the display go to FOLDER, where ImageMagick is. Ends with code 0 when all is well.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+import traceback
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
+sys.path.append(str(ROOT / "bindings"))
+PORT, DATABASE, FOLDER, SERIAL = sys.argv[sys.argv.index("--") + 1 :]
+sys.path.append(SERIAL)
+
+from live_support import DRIVER, OPTIONS  # noqa: E402
+from support import SITES  # noqa: E402
+
+import blender_addon  # noqa: E402 - found by the lines above
+from blender_addon import ui  # noqa: E402
+from blender_addon.scene import live as live_scene  # noqa: E402
+from blender_addon.session import job as jobs  # noqa: E402
+from blender_addon.session import live  # noqa: E402
+from blender_addon.ui.live import SPARSEMOCAP_PT_live as LivePanel  # noqa: E402
+
+TIMEOUT_S = 40.0
+Steps = Iterator[float]
+shown_late_s: list[float] = []
+
+
+def view() -> dict[str, object]:
+    window = bpy.context.window_manager.windows[0]
+    areas = [area for area in window.screen.areas if area.type == "VIEW_3D"]
+    area = max(areas, key=lambda area: area.width * area.height)
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    return {"window": window, "area": area, "region": region}
+
+
+def sidebar() -> bpy.types.Region:
+    return next(region for region in view()["area"].regions if region.type == "UI")
+
+
+def until(is_done: Callable[[], object]) -> Steps:
+    begin = time.monotonic()
+    while not is_done():
+        assert time.monotonic() - begin < TIMEOUT_S, "nothing happened"
+        yield 0.05
+
+
+def call(operator: Callable[..., set[str]], *arguments: object) -> set[str]:
+    with bpy.context.temp_override(**view()):
+        return operator(*arguments)
+
+
+def watch_draws() -> dict[str, int]:
+    drawn, draw = {"times": 0}, LivePanel.draw
+
+    def counted(self: LivePanel, context: bpy.types.Context) -> None:
+        drawn["times"] += 1
+        draw(self, context)
+
+    LivePanel.draw = counted
+    return drawn
+
+
+def watch_latency() -> None:
+    show = live_scene._show
+
+    def timed(armature: bpy.types.Object, pose: object) -> None:
+        show(armature, pose)
+        shown_late_s.append(time.monotonic() - pose.time_s)
+
+    live_scene._show = timed
+
+
+def click(x: int, y: int) -> Steps:
+    window = view()["window"]
+    window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=x, y=y)
+    yield 0.1
+    window.event_simulate(type="LEFTMOUSE", value="PRESS", x=x, y=y)
+    yield 0.05
+    window.event_simulate(type="LEFTMOUSE", value="RELEASE", x=x, y=y)
+    yield 0.15
+
+
+def open_panel(drawn: dict[str, int]) -> Steps:
+    """Down the tabs until the panel is drawn, as a user finds it."""
+    call(bpy.ops.screen.screen_full_area)
+    yield 0.4
+    view()["area"].spaces.active.show_region_ui = True
+    yield 0.4
+    region = sidebar()
+    if hasattr(region, "active_panel_category"):
+        region.active_panel_category = LivePanel.bl_category
+        yield 0.3
+    else:
+        for y in range(region.y + region.height - 15, region.y, -20):
+            yield from click(region.x + region.width - 10, y)
+            if drawn["times"]:
+                break
+    yield from until(lambda: drawn["times"])
+
+
+def picture(name: str) -> None:
+    if shutil.which("import"):
+        subprocess.run(["import", "-window", "root", str(Path(FOLDER) / name)], check=True)
+
+
+def points() -> np.ndarray:
+    bones = live_scene.followed().pose.bones
+    return np.array([bone.tail for bone in bones])
+
+
+def play() -> Steps:
+    drawn = watch_draws()
+    watch_latency()
+    yield from open_panel(drawn)
+    chosen = bpy.context.scene.sparse_mocap
+    chosen.port, chosen.driver, chosen.driver_options = PORT, DRIVER, OPTIONS
+    chosen.sites, chosen.database = ", ".join(SITES), DATABASE
+    call(bpy.ops.ed.undo_push)
+    begin = time.monotonic()
+    assert call(bpy.ops.sparse_mocap.connect_sensors) == {"FINISHED"}
+    assert time.monotonic() - begin < 1.0, "connecting held the window"
+    session = live.current()
+    yield from until(lambda: session.state.error or len(session.state.sensors) == len(SITES))
+    assert session.state.error == "", session.state.error
+    assert call(bpy.ops.sparse_mocap.go_live, "INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+    yield from until(lambda: len(shown_late_s) > 5)
+    call(bpy.ops.view3d.view_selected)
+    call(bpy.ops.sparse_mocap.record_take)
+    yield 0.7
+    first = points()
+    picture("first.png")
+    call(bpy.ops.screen.animation_play)
+    frame = bpy.context.scene.frame_current
+    yield 1.2
+    assert bpy.context.scene.frame_current > frame, "the timeline is not free"
+    assert np.abs(points() - first).max() > 0.05, "the armature does not move"
+    call(bpy.ops.screen.animation_cancel)
+    picture("second.png")
+    undo_name = live_scene.followed().name
+    call(bpy.ops.ed.undo)  # what it takes back matters not, only that it does no harm
+    yield 0.5
+    late = np.array(shown_late_s)
+    p50, p99 = 1e3 * np.quantile(late, [0.5, 0.99])
+    print(f"window: sensor to shown pose: p50 {p50:.0f} ms, p99 {p99:.0f} ms, {len(late)} poses")
+    yield from until(lambda: session.state.recording)
+    assert call(bpy.ops.sparse_mocap.stop_take, "INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+    yield from until(lambda: bpy.data.actions and jobs.current() is None)
+    yield 0.5
+    picture("baked.png")
+    print("takes", bpy.context.scene.sparse_mocap.take, undo_name, flush=True)
+    call(bpy.ops.wm.quit_blender)
+
+
+def tick() -> float | None:
+    try:
+        return next(steps)
+    except StopIteration:
+        return None
+    except BaseException:
+        traceback.print_exc()
+        sys.stdout.flush()
+        os._exit(1)
+
+
+bpy.context.preferences.view.show_splash = False
+for panel in ui.CLASSES:
+    if issubclass(panel, bpy.types.Panel):
+        panel.bl_options = set() if panel is LivePanel else {"DEFAULT_CLOSED"}
+blender_addon.register()
+bpy.ops.wm.save_as_mainfile(filepath=str(Path(FOLDER) / "scene.blend"))
+steps = play()
+bpy.app.timers.register(tick, persistent=True, first_interval=1.0)
