@@ -122,7 +122,7 @@ void note_what_is_missing(std::span<const ObservedTurn> turns, const Mounting& m
 
 double typical_place(const Site& site) {
   using namespace standard_joint;
-  return site.carrier == ltibia || site.carrier == rtibia ? 0.5 : 1.0;
+  return site.carrier == ltibia || site.carrier == rtibia ? 0.4 : 1.0;
 }
 
 SensorCalibration calibrate_sensor(const Site& site, const SensorRecording& standing,

@@ -35,7 +35,7 @@ struct RecordedMovement {
   SensorRecording recording;
 };
 
-// Where sensors are strapped: on the middle of the shank, at the far end of other bones.
+// Where sensors are strapped: 40 % of the way from knee to ankle, at the far end of other bones.
 double typical_place(const Site& site);
 
 struct CalibrationSettings {
