@@ -10,7 +10,7 @@ from bpy.props import IntProperty
 from bpy.types import Context, Operator
 
 from ..scene import live as live_scene
-from ..scene.armature import rest_bones, select_only
+from ..scene.armature import select_only
 from ..scene.performance import perform_steps
 from ..scene.settings import settings_of
 from ..session import live, sensors
@@ -137,11 +137,10 @@ class SPARSEMOCAP_OT_go_live(JobOperator, Operator):
         """Choose or make the armature, and let it follow."""
         yield 0.0
         session = _connected()
-        skeleton = result.motions.skeleton
-        armature = live_scene.live_armature(context, skeleton)
+        rig = live_scene.live_rig(context, result.motions.skeleton)
         session.go_live(result, settings_of(context.scene).preset)
-        live_scene.follow(armature, rest_bones(skeleton).names)
-        return f'"{armature.name}" is live'
+        live_scene.follow(rig)
+        return f'"{rig.armature.name}" is live'
 
 
 class SPARSEMOCAP_OT_leave_live(_NowOperator, Operator):

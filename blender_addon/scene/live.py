@@ -15,12 +15,12 @@ from ..session.errors import InputError
 from ..session.live_poses import Pose
 from . import compat
 from .armature import (
+    Rig,
     editable,
     is_ours,
     new_armature,
     reusable_armature,
     rig_of,
-    units_per_metre,
     use_quaternions,
 )
 from .axes import bone_quaternions, to_blender
@@ -30,10 +30,11 @@ _PANEL_S = 0.25
 
 _target = ""  # the armature's name: references do not outlive an undo
 _bones: list[str] = []
+_units_per_metre = 1.0
 _next_panel_s = 0.0
 
 
-def live_armature(context: Context, skeleton: Any) -> Object:
+def live_rig(context: Context, skeleton: Any) -> Rig:
     """The armature that is to move: the one that is there, where it can, else a new one.
 
     An action that it plays is taken off it and stays in the file. Raises InputError.
@@ -53,13 +54,14 @@ def live_armature(context: Context, skeleton: Any) -> Object:
         data.action.use_fake_user = True
         data.action = None
     use_quaternions(armature)
-    return armature
+    return rig
 
 
-def follow(armature: Object, bones: list[str]) -> None:
-    """Let the armature show the live poses; bones: by joint."""
-    global _target
-    _target, _bones[:] = armature.name, bones
+def follow(rig: Rig) -> None:
+    """Let the armature show the live poses."""
+    global _target, _units_per_metre
+    _target, _bones[:] = rig.armature.name, rig.bones
+    _units_per_metre = rig.units_per_metre
     ensure_ticking()
 
 
@@ -116,11 +118,10 @@ def _show(armature: Object, pose: Pose) -> None:
     bones = armature.data.bones
     if any(name not in bones for name in _bones):
         return  # the animator is rebuilding it
-    scale = units_per_metre(bpy.context.scene)
     for joint, name in enumerate(_bones):
         rest = np.array(bones[name].matrix_local.to_3x3())
         posed = armature.pose.bones[name]
         posed.rotation_quaternion = bone_quaternions(pose.rotations[joint], rest)
         if joint == 0:
             head = np.array(bones[name].head_local)
-            posed.location = (to_blender(pose.root_position) * scale - head) @ rest
+            posed.location = (to_blender(pose.root_position) * _units_per_metre - head) @ rest

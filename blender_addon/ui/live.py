@@ -102,7 +102,7 @@ def _sensors(layout: UILayout, state: LiveState) -> None:
     column = layout.box().column(align=True)
     column.scale_y = 0.85
     for sensor in state.sensors:
-        split = column.split(factor=0.5)
+        split = column.split(factor=0.58)
         name = str(sensor["site"] or sensor["name"]).replace("_", " ")
         split.label(text=name, icon=_ICONS.get(sensor["state"], "ERROR"))
         lost = f", {sensor['missing']} lost" if sensor["missing"] else ""
@@ -133,7 +133,7 @@ def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
         ]
         dropped = quality.num_skipped + state.num_dropped
         if dropped:
-            rows.append(("Dropped", f"{dropped} poses"))
+            rows.append(("Not shown", f"{dropped} poses"))
         text.facts(layout, rows)
 
 

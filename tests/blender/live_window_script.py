@@ -127,6 +127,8 @@ def play() -> Steps:
     chosen = bpy.context.scene.sparse_mocap
     chosen.port, chosen.driver, chosen.driver_options = PORT, DRIVER, OPTIONS
     chosen.sites, chosen.database = ", ".join(SITES), DATABASE
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
     call(bpy.ops.ed.undo_push)
     begin = time.monotonic()
     assert call(bpy.ops.sparse_mocap.connect_sensors) == {"FINISHED"}
@@ -147,8 +149,9 @@ def play() -> Steps:
     assert bpy.context.scene.frame_current > frame, "the timeline is not free"
     assert np.abs(points() - first).max() > 0.05, "the armature does not move"
     call(bpy.ops.screen.animation_cancel)
+    call(bpy.ops.view3d.view_selected)
+    yield 0.7
     picture("second.png")
-    undo_name = live_scene.followed().name
     call(bpy.ops.ed.undo)  # what it takes back matters not, only that it does no harm
     yield 0.5
     late = np.array(shown_late_s)
@@ -159,7 +162,7 @@ def play() -> Steps:
     yield from until(lambda: bpy.data.actions and jobs.current() is None)
     yield 0.5
     picture("baked.png")
-    print("takes", bpy.context.scene.sparse_mocap.take, undo_name, flush=True)
+    sys.stdout.flush()
     call(bpy.ops.wm.quit_blender)
 
 
