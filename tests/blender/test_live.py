@@ -168,6 +168,27 @@ def test_undo_and_deletion_end_live_without_harm(tmp_path):
         assert session.is_running
 
 
+def test_rendering_and_edit_mode_are_left_alone(tmp_path):
+    with _connected(tmp_path) as session:
+        armature = _go_live()
+        _ticked(3)
+        scene, compat = addon("scene.live"), addon("scene.compat")
+        is_rendering = compat.is_rendering
+        compat.is_rendering = lambda: True
+        try:
+            before = _points(armature)
+            until(lambda: session.state.num_dropped > 3)
+            assert scene.tick() is None
+            assert np.array_equal(_points(armature), before)
+        finally:
+            compat.is_rendering = is_rendering
+        bpy.ops.object.mode_set(mode="EDIT")
+        assert scene.tick() is None
+        bpy.ops.object.mode_set(mode="OBJECT")
+        _ticked(3)
+        assert session.is_live_wanted
+
+
 def test_another_file_ends_the_session_and_its_capture(tmp_path):
     with _connected(tmp_path) as session:
         _go_live()
