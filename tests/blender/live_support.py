@@ -99,10 +99,11 @@ def serial_folder() -> Path:
     """
     from support import Skipped
 
+    known = importlib.util.find_spec("serial")
+    if known is not None and known.submodule_search_locations:
+        return Path(known.submodule_search_locations[0]).parent
     folder = Path(tempfile.mkdtemp(prefix="sparse_mocap_serial_"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    if importlib.util.find_spec("serial") is not None:
-        return folder
     code = "import serial; print(serial.__path__[0])"
     python = shutil.which("python") or "python3"
     found = subprocess.run([python, "-c", code], capture_output=True, text=True, check=False)
