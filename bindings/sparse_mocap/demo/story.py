@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -16,6 +17,7 @@ from .. import (
     build_database,
     mapping_folder,
     nearest_poses,
+    resampled,
     write_bvh,
     write_take,
 )
@@ -34,6 +36,7 @@ from ..reconstruction import latency_ms
 from ..take import Take
 from .blender import find_blender, render
 from .choice import Choice, generated, recorded
+from .sensors import record_emulated
 
 Floats = NDArray[np.float64]
 
@@ -46,9 +49,10 @@ def play(
     output = output.resolve()
     choice = _chosen(output, database_source)
     database = _built(choice, output / "database.smdb")
-    performance = performed(choice.performance, database.rate_hz)
+    performance = _captured(performed(choice.performance, database.rate_hz), database, output)
     origin = f"simulated from {choice.performance.name} at 100 Hz without noise"
-    write_take(output / "take.csv", Take(performance.take.sensors, (origin,)))
+    take = Take(performance.take.sensors, (origin, *performance.take.comments))
+    write_take(output / "take.csv", take)
     reconstructor = Reconstructor(database, performance.take.sites)
     with progress_bar("Reconstructing") as progress:
         solved = reconstructor.solve(performance.readings, progress=progress)
@@ -65,6 +69,17 @@ def play(
     _say("reconstructed motion", output / "take.bvh")
     _say("error over time", output / "errors.png")
     return _show_in_blender(output, blender) if is_blender_wanted else 0
+
+
+def _captured(performance: Performance, database: MotionDatabase, output: Path) -> Performance:
+    """Returns the performance as emulated sensors on a port were recorded."""
+    with progress_bar("Recording") as progress:
+        take = record_emulated(performance.take, output / "capture", progress)
+    count = sum(len(record.times_s) for record in take.sensors.values())
+    sent = sum(len(record.times_s) for record in performance.take.sensors.values())
+    click.echo(f"Recorded {count} of {sent} samples from four emulated sensors on a port")
+    times, readings = resampled(take, database.rate_hz)
+    return replace(performance, take=take, times_s=times, readings=readings)
 
 
 def _chosen(output: Path, database_source: Path | None) -> Choice:

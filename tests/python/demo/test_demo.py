@@ -39,6 +39,9 @@ def test_without_data_everything_is_made_here(tmp_path: Path) -> None:
         assert str(tmp_path / name) in done.stdout
     error, oracle = told_errors(done.stdout)
     assert oracle < error
+    recorded = re.search(r"Recorded (\d+) of (\d+) samples", done.stdout)
+    assert recorded is not None
+    assert 0.99 * int(recorded[2]) <= int(recorded[1]) <= int(recorded[2])
 
 
 def test_with_data_a_clip_is_performed_that_the_database_lacks(
