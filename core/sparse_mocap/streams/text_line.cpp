@@ -94,8 +94,11 @@ class Encoder : public StreamEncoder {
   }
 
   std::vector<Bytes> hello() override {
-    if (!is_header_sent_) return {};
     Bytes line;
+    if (!is_header_sent_) {
+      append_text(line, "ready\r\n");  // sketches greet; no sample is then taken for half a line
+      return {line};
+    }
     for (const auto column : profile_.columns) {
       if (!line.empty()) line.push_back(static_cast<std::uint8_t>(profile_.separator));
       append_text(line, kNames[static_cast<std::size_t>(column)]);
