@@ -45,10 +45,10 @@ class LiveState:
 class LiveSession:
     """A capture's client on a thread of its own. All methods return at once or within a second."""
 
-    def __init__(self, connect: Callable[[], Any], label: str, *, is_owner: bool) -> None:
-        """connect: makes the CaptureClient; is_owner: the capture ends with the session."""
+    def __init__(self, connect: Callable[[], Any], label: str) -> None:
+        """connect: makes the CaptureClient."""
         self.label = label
-        self._connect, self._is_owner = connect, is_owner
+        self._connect = connect
         self._requests: SimpleQueue[tuple[Callable[[Any], Any], Future[Any]]] = SimpleQueue()
         self._stop = threading.Event()
         self._lock = threading.Lock()
@@ -190,10 +190,9 @@ class LiveSession:
             self._tell(num_dropped=num_dropped)
 
     def _let_go(self, client: Any) -> None:
-        """A capture of our own ends, unless it records."""
+        """The capture ends, unless it records or others are attached to it."""
         with suppress(Exception):  # it may be gone already
-            if self._is_owner and client.status()["recording"] is None:
-                client.stop()
+            client.leave()
         client.close()
 
     def _tell(self, **changes: Any) -> None:

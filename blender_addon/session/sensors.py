@@ -74,14 +74,14 @@ def connecting(port: Port, folder: Path) -> LiveSession:
     def connect() -> Any:
         return module.start_capture(config, _free(logs))
 
-    return LiveSession(connect, port.port, is_owner=True)
+    return LiveSession(connect, port.port)
 
 
 def attaching(session: Any) -> LiveSession:
     """A session, to be begun, with a capture (capture.session.Session) that goes on already."""
     module = capture()
     label = ", ".join(session.ports) or f"process {session.pid}"
-    return LiveSession(lambda: module.CaptureClient(session), label, is_owner=False)
+    return LiveSession(lambda: module.CaptureClient(session), label)
 
 
 def going_live_job(database_path: str) -> Job:

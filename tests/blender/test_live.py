@@ -228,6 +228,20 @@ def test_unregister_leaves_a_recording_which_is_found_again(tmp_path):
         until(lambda: not is_alive(capture.pid))
 
 
+def test_disconnecting_leaves_a_capture_that_others_need(tmp_path):
+    from sparse_mocap.capture import CaptureClient
+
+    with _connected(tmp_path):
+        [capture] = _captures()
+        other = CaptureClient(capture)
+        assert bpy.ops.sparse_mocap.disconnect_sensors() == {"FINISHED"}
+        assert addon("session.live").current() is None
+        other.skip()
+        until(lambda: len(other.read()) > 0)
+        assert other.leave()
+        until(lambda: not is_alive(capture.pid))
+
+
 def test_quitting_or_crashing_leaves_no_capture(tmp_path):
     """A Blender that connects and ends, in one way or the other."""
     if not bpy.app.binary_path:

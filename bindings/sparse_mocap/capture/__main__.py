@@ -37,7 +37,7 @@ def main(folder: Path) -> int:
         server.run()
     finally:
         recorder.stop()
-        if config.is_temporary and recorder.num_recordings == 0:
+        if recorder.may_be_removed:
             shutil.rmtree(folder, ignore_errors=True)
     return 0
 

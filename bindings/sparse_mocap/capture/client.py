@@ -115,13 +115,23 @@ class CaptureClient:
         """Ends the recording."""
         self._ask("stop_recording")
 
+    def leave(self, *, is_kept: bool = False) -> bool:
+        """Detaches, and returns whether that ended the capture: it waits until it is gone.
+
+        It goes on while others are attached or something is recorded. is_kept: what was recorded
+        is kept elsewhere by now, so that the folder goes with the capture.
+        """
+        ends = bool(self._ask("leave", is_kept=is_kept)["ends"])
+        self.close()
+        if ends:
+            self._wait_for_end()
+        return ends
+
     def stop(self) -> None:
         """Ends the capture, whoever else is attached, and waits until it is gone."""
         self._ask("stop")
         self.close()
-        end = time.monotonic() + START_TIMEOUT_S
-        while session_path(self.session.pid).exists() and time.monotonic() < end:
-            time.sleep(0.02)
+        self._wait_for_end()
 
     def close(self) -> None:
         """Detaches."""
@@ -138,6 +148,11 @@ class CaptureClient:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+    def _wait_for_end(self) -> None:
+        end = time.monotonic() + START_TIMEOUT_S
+        while session_path(self.session.pid).exists() and time.monotonic() < end:
+            time.sleep(0.02)
 
     def _ask(self, request: str, **arguments: Any) -> dict[str, Any]:
         try:

@@ -51,6 +51,8 @@ class Recorder:
         self._rates: deque[tuple[float, dict[int, int]]] = deque(maxlen=_RATE_WINDOW)
         self.recording: Recording | None = None
         self.num_recordings = 0
+        self.may_be_removed = config.is_temporary
+        """Whether nothing in the folder would be missed: nothing was recorded, or it is kept."""
         self._event(0, {"event": "capture", "config": config.as_json(), "unix_s": time.time()})
         self.links = [Link(index, link, self) for index, link in enumerate(config.links)]
 
@@ -124,6 +126,7 @@ class Recorder:
                 self.recording = Recording(self.num_recordings, now, None, self._log.num_samples)
                 self._event(0, {"event": "recording", "number": self.num_recordings})
                 self.num_recordings += 1
+                self.may_be_removed = False
             self.recording.until_ns = None if seconds is None else now + int(seconds * 1e9)
             return self._recording_json()
 

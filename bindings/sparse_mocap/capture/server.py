@@ -130,9 +130,9 @@ class Server:
             return {"pid": os.getpid(), "folder": str(self._recorder.folder)}
         if not client.is_known:
             raise ConnectionRefusedError("wrong token")
-        return self._known_answer(what, request)
+        return self._known_answer(client, what, request)
 
-    def _known_answer(self, what: str, request: dict[str, Any]) -> dict[str, Any]:
+    def _known_answer(self, client: _Client, what: str, request: dict[str, Any]) -> dict[str, Any]:
         if what == "status":
             return self._recorder.status()
         if what == "record":
@@ -141,10 +141,19 @@ class Server:
         if what == "stop_recording":
             self._recorder.stop_recording()
             return {}
+        if what == "leave":
+            return self._left(client, is_kept=bool(request.get("is_kept")))
         if what == "stop":
             self.must_end = True
             return {}
         return {"error": f"{what!r} is no request"}
+
+    def _left(self, client: _Client, *, is_kept: bool) -> dict[str, Any]:
+        client.is_known = False
+        if is_kept:
+            self._recorder.may_be_removed = True
+        self.must_end = not self._is_needed()
+        return {"ends": self.must_end}
 
     def _close(self) -> None:
         for client in list(self._clients):

@@ -17,6 +17,7 @@ from rich.live import Live
 
 from .. import MotionDatabase
 from ..capture.client import CaptureClient, start_capture
+from ..capture.errors import CaptureError
 from .capture_options import capture_options, config_of
 from .console import interrupted, warn
 from .live_session import LiveSession
@@ -78,10 +79,23 @@ def live(
 
 def _own_capture(stack: ExitStack, config: Any) -> CaptureClient:
     folder = Path(tempfile.mkdtemp(prefix="sparse-mocap-live-"))
-    stack.callback(shutil.rmtree, folder, ignore_errors=True)
-    client = start_capture(replace(config, is_temporary=True), folder)
-    stack.callback(client.stop)
+    try:
+        client = start_capture(replace(config, is_temporary=True), folder)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    stack.callback(_leave, client)
     return client
+
+
+def _leave(client: CaptureClient) -> None:
+    """Lets the capture go, which removes its folder; others may be attached and go on with it."""
+    try:
+        is_over = client.leave()
+    except CaptureError:  # it was killed
+        is_over = True
+    if is_over:
+        shutil.rmtree(client.folder, ignore_errors=True)
 
 
 def _settled(client: CaptureClient, sites: tuple[str, ...] | None) -> dict[str, Any]:

@@ -65,9 +65,7 @@ def record(
     if attach is not None:
         with attached(attach) as client:
             _write(output, _recorded(client, seconds, sites))
-            if client.folder == folder:
-                client.stop()
-                shutil.rmtree(folder)
+            _leave(client, folder)
         return
     config = config_of(ports, driver, baud, options, sites)
     client = _started(config, folder)
@@ -78,8 +76,17 @@ def record(
         shutil.rmtree(folder, ignore_errors=True)
         raise
     _write(output, _recorded(client, seconds, sites))
-    client.stop()
-    shutil.rmtree(folder)
+    _leave(client, folder)
+
+
+def _leave(client: CaptureClient, folder: Path) -> None:
+    """Lets the capture go, whose folder goes with it where it was made for this take."""
+    is_ours = client.folder == folder
+    if client.leave(is_kept=is_ours):
+        if is_ours:
+            shutil.rmtree(folder, ignore_errors=True)  # the process may be at it as well
+    else:
+        warn([f"others are attached to the capture of process {client.session.pid}: it goes on"])
 
 
 def _started(config: CaptureConfig, folder: Path) -> CaptureClient:

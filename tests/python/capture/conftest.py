@@ -20,7 +20,7 @@ from sparse_mocap.capture.session import FOLDER_VARIABLE, sessions
 def runtime(
     tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Path]:
-    """Whatever a test leaves running is ended, and counts as a fault of the test."""
+    """Whatever a test leaves running is ended."""
     folder = tmp_path_factory.mktemp("runtime")
     monkeypatch.setenv(FOLDER_VARIABLE, str(folder))
     yield folder

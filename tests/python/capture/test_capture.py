@@ -120,6 +120,43 @@ def test_a_recording_goes_on_without_clients(play: Play, tmp_path: Path) -> None
     )
 
 
+def test_who_leaves_ends_only_what_nobody_else_needs(play: Play, tmp_path: Path) -> None:
+    emulator = play(some_take(10.0))
+    config = config_for(emulator.lines[0].path, linger_s=60.0, is_temporary=True)
+    first = start_capture(config, tmp_path / "c")
+    second, third = (CaptureClient(first.session) for _ in range(2))
+    first.wait_for_samples(10.0)
+    first.record()
+    assert not first.leave()
+    second.skip()
+    until(lambda: len(second.read()) > 0)
+    second.stop_recording()
+    assert not second.leave()
+    assert is_running(third.session.pid)
+    third.skip()
+    until(lambda: len(third.read()) > 0)
+    assert third.leave()
+    until(lambda: not is_running(third.session.pid))
+    assert len(recording_to_take(tmp_path / "c").take.sensors) == 3
+
+
+def test_a_folder_goes_when_what_was_recorded_is_kept(play: Play, tmp_path: Path) -> None:
+    emulator = play(some_take(10.0))
+    for folder, records_again in ((tmp_path / "gone", False), (tmp_path / "there", True)):
+        config = config_for(emulator.lines[0].path, linger_s=0.1, must_record=True)
+        first = start_capture(config, folder)
+        second = CaptureClient(first.session)
+        first.wait_for_samples(10.0)
+        first.stop_recording()
+        assert not first.leave(is_kept=True)
+        if records_again:
+            second.record()
+            second.stop_recording()
+        assert second.leave()
+        until(lambda: not is_running(second.session.pid))  # noqa: B023 - waits at once
+        assert folder.exists() == records_again
+
+
 def test_a_recording_ends_by_itself(play: Play, tmp_path: Path) -> None:
     emulator = play(some_take(5.0))
     with CaptureClient.start(
