@@ -34,12 +34,14 @@ __all__ = [
     "CalibrationError",
     "SensorCalibration",
     "Steps",
+    "Worn",
     "apply",
     "assign_by_shaking",
     "calibrate",
     "guided_movements",
     "places_of",
     "standing_pose_names",
+    "worn_as",
 ]
 
 _CLEARLY = 2.0  # how much more the shaken sensor must move than any other
@@ -107,6 +109,21 @@ class Steps:
     """How the wearer stood, one of standing_pose_names()."""
 
 
+@dataclass(frozen=True)
+class Worn:
+    """How sensors are worn, in an order: what live readings need of a calibration."""
+
+    sites: list[str]
+    places: list[float] | None
+    """Along the sites' bones; None: the sites' own."""
+    axes: Floats
+    """(S, 3, 3), R_site_sensor times the scale."""
+
+    def ideal(self, specific_force: Floats) -> Floats:
+        """What ideal sensors would have read at the same instant, (S, 3) m/s^2."""
+        return np.einsum("sij,sj->si", self.axes, specific_force)
+
+
 def calibrate(
     take: Take,
     steps: Steps,
@@ -160,6 +177,18 @@ def apply(calibration: Calibration, take: Take) -> Take:
 def places_of(calibration: Calibration, take: Take) -> list[float]:
     """Returns the place of each of the take's sensors, in its order."""
     return [_of(calibration, name).place for name in take.sensors]
+
+
+def worn_as(calibration: Calibration | None, names: Sequence[str]) -> Worn:
+    """Returns how sensors of these names are worn; without a calibration, as their sites ask for.
+
+    Raises CalibrationError when a sensor has no calibration.
+    """
+    if calibration is None:
+        return Worn(list(names), None, np.tile(np.eye(3), (len(names), 1, 1)))
+    known = [_of(calibration, name) for name in names]
+    axes = np.array([sensor.scale * sensor.R_site_sensor for sensor in known])
+    return Worn([sensor.site for sensor in known], [sensor.place for sensor in known], axes)
 
 
 def assign_by_shaking(take: Take, span: Span) -> str:

@@ -6,14 +6,26 @@ import atexit
 import bpy
 from bpy.app.handlers import persistent
 
+from ..scene import prompt
 from ..scene.live import stop_ticking
 from ..session import job
 from ..session import live as live_session
+from ..session.calibrating import calibrations
 from ..session.database import databases
 from ..session.imported import glances
 from ..session.surroundings import surroundings
 from ..session.take import takes
-from . import clips, database, import_motion, job_operator, live, mapping, reconstruct, take
+from . import (
+    calibrate,
+    clips,
+    database,
+    import_motion,
+    job_operator,
+    live,
+    mapping,
+    reconstruct,
+    take,
+)
 
 CLASSES = (
     *job_operator.CLASSES,
@@ -24,6 +36,7 @@ CLASSES = (
     *take.CLASSES,
     *reconstruct.CLASSES,
     *live.CLASSES,
+    *calibrate.CLASSES,
 )
 
 
@@ -32,6 +45,7 @@ def _before_load(*_: object) -> None:
     """Another file is about to be opened: what runs for this one ends."""
     job.cancel_current()
     stop_ticking()
+    prompt.hide()
     live_session.end()
 
 
@@ -42,6 +56,7 @@ def _end_all() -> None:
     surroundings.wait(1.0)
     databases.close()
     takes.close()
+    calibrations.close()
     glances.close()
 
 
@@ -56,6 +71,7 @@ def register() -> None:
 def unregister() -> None:
     """Stop what runs and take the operators away."""
     stop_ticking()
+    prompt.hide()
     _end_all()
     atexit.unregister(_end_all)
     bpy.app.handlers.load_pre.remove(_before_load)

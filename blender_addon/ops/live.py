@@ -18,6 +18,7 @@ from ..session.database import Database
 from ..session.errors import InputError
 from ..session.job import Job
 from ..session.live import LiveSession, answer_of, one_line_of
+from ..session.new_files import takes_folder
 from ..session.sensors import Kept
 from ..session.steps import Steps
 from ..session.surroundings import surroundings
@@ -26,7 +27,8 @@ from .job_operator import JobOperator
 _ANSWER_S = 1.0
 
 
-def _connected() -> LiveSession:
+def connected() -> LiveSession:
+    """The session that goes on. Raises InputError."""
     session = live.current()
     if session is None or not session.is_running:
         raise InputError("No sensors are connected: press Connect first")
@@ -78,7 +80,7 @@ class SPARSEMOCAP_OT_connect_sensors(_NowOperator, Operator):
         port = sensors.Port(
             settings.port, settings.driver, settings.baud, settings.driver_options, settings.sites
         )
-        live.begin(sensors.connecting(port, sensors.takes_folder(bpy.data.filepath)))
+        live.begin(sensors.connecting(port, takes_folder(bpy.data.filepath)))
         live_scene.ensure_ticking()
         return ""
 
@@ -129,16 +131,19 @@ class SPARSEMOCAP_OT_go_live(JobOperator, Operator):
 
     def prepare(self, context: Context) -> Job:
         """Open the scene's database."""
-        _connected()
+        connected()
         settings = settings_of(context.scene)
-        return sensors.going_live_job(bpy.path.abspath(settings.database))
+        return sensors.going_live_job(
+            bpy.path.abspath(settings.database), bpy.path.abspath(settings.calibration)
+        )
 
-    def apply(self, context: Context, result: Database) -> Steps[str]:
+    def apply(self, context: Context, result: tuple[Database, Any]) -> Steps[str]:
         """Choose or make the armature, and let it follow."""
         yield 0.0
-        session = _connected()
-        rig = live_scene.live_rig(context, result.motions.skeleton)
-        session.go_live(result, settings_of(context.scene).preset)
+        session = connected()
+        database, calibration = result
+        rig = live_scene.live_rig(context, database.motions.skeleton)
+        session.go_live(database, settings_of(context.scene).preset, calibration)
         live_scene.follow(rig)
         return f'"{rig.armature.name}" is live'
 
@@ -153,7 +158,7 @@ class SPARSEMOCAP_OT_leave_live(_NowOperator, Operator):
 
     def act(self, context: Context) -> str:
         """Make no more poses."""
-        _connected().leave_live()
+        connected().leave_live()
         return ""
 
 
@@ -167,7 +172,7 @@ class SPARSEMOCAP_OT_record_take(_NowOperator, Operator):
 
     def act(self, context: Context) -> str:
         """Begin to record."""
-        answer_of(_connected().record(), _ANSWER_S)
+        answer_of(connected().record(), _ANSWER_S)
         return "Recording"
 
 
@@ -183,9 +188,10 @@ class SPARSEMOCAP_OT_stop_take(JobOperator, Operator):
         """Keep the take and reconstruct it."""
         settings = settings_of(context.scene)
         return sensors.stopping_job(
-            _connected(),
-            bpy.path.abspath(settings.database) if settings.database else "",
-            sensors.takes_folder(bpy.data.filepath),
+            connected(),
+            bpy.path.abspath(settings.database),
+            bpy.path.abspath(settings.calibration),
+            takes_folder(bpy.data.filepath),
             settings.preset,
         )
 

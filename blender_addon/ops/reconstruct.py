@@ -36,6 +36,7 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
         job = reconstruct_job(
             bpy.path.abspath(settings.database),
             bpy.path.abspath(settings.take),
+            bpy.path.abspath(settings.calibration),
             preset=self.preset,
             offline=self.offline,
         )

@@ -101,6 +101,21 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
         name="Reuse armature",
         description="Add the action to a Sparse Mocap armature of this scene, not to a new one",
     )
+    calibration: StringProperty(
+        name="Calibration",
+        description=(
+            "How the sensors are strapped on (.json), as Calibrate found it. Empty: worn as "
+            "Tautges et al. 2011 do"
+        ),
+        subtype="FILE_PATH",
+    )
+    height_m: FloatProperty(
+        name="Height (m)",
+        description="How tall the performer is, in metres",
+        default=1.75,
+        min=0.5,
+        max=2.5,
+    )
     port: StringProperty(
         name="Port",
         description="The serial port of the sensors, or udp://HOST:PORT",

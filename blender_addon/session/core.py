@@ -12,6 +12,7 @@ from .errors import InputError, one_line
 VENDOR = Path(__file__).resolve().parents[1] / "vendor"
 MODULES = (
     "sparse_mocap._core",
+    "sparse_mocap.calibration_file",
     "sparse_mocap.mappings",
     "sparse_mocap.reconstruction",
     "sparse_mocap.take",

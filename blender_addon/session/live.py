@@ -55,7 +55,8 @@ class LiveSession:
         self._state = LiveState()
         self._pose: Pose | None = None
         self._is_pose_new = False
-        self._wanted: tuple[Database, str] | None = None
+        self._wanted: tuple[Database, str, Any] | None = None
+        self._made_for: tuple[Database, str, Any] | None = None
         self._poses: LivePoses | None = None
         self._worn: dict[int, str] = {}
         self._thread = threading.Thread(target=self._run, name="Sparse Mocap: live", daemon=True)
@@ -81,9 +82,14 @@ class LiveSession:
             self._thread.join(STOP_WITHIN_S)
         return not self._thread.is_alive()
 
-    def go_live(self, database: Database, preset: str) -> None:
-        """Make poses from now on."""
-        self._wanted = (database, preset)
+    def go_live(self, database: Database, preset: str, calibration: Any = None) -> None:
+        """Make poses from now on. calibration: as LivePoses takes it."""
+        self._wanted = (database, preset, calibration)
+
+    def use_calibration(self, calibration: Any) -> None:
+        """Make poses with another calibration, if poses are being made."""
+        if self._wanted is not None:
+            self._wanted = (*self._wanted[:2], calibration)
 
     def leave_live(self) -> None:
         """Make no more poses."""
@@ -101,9 +107,9 @@ class LiveSession:
             self._is_pose_new = False
         return pose if is_new else None
 
-    def record(self) -> Future[Any]:
-        """Begin to record."""
-        return self._ask(lambda client: client.record())
+    def record(self, seconds: float | None = None) -> Future[Any]:
+        """Begin to record, for so long or until it is stopped."""
+        return self._ask(lambda client: client.record(seconds))
 
     def stop_recording(self) -> Future[Any]:
         """End the recording; the result is the capture's folder and the recording's number."""
@@ -157,10 +163,12 @@ class LiveSession:
                 raise InputError(link["message"] or f"{link['port']}: failed")
         worn = {i: sensor["site"] for i, sensor in enumerate(status["sensors"])}
         is_settled, self._worn = worn == self._worn, worn
-        if not is_settled or self._wanted is None:
+        wanted = self._wanted
+        if not is_settled or wanted is not self._made_for:
             self._poses = None
-        if self._wanted is not None and self._poses is None and worn and is_settled:
-            self._begin_poses(*self._wanted)
+        if wanted is not None and self._poses is None and worn and is_settled:
+            self._made_for = wanted
+            self._begin_poses(*wanted)
         self._tell(
             is_connected=True,
             links=tuple(status["links"]),
@@ -170,9 +178,9 @@ class LiveSession:
             quality=self._poses.quality() if self._poses else Quality(),
         )
 
-    def _begin_poses(self, database: Database, preset: str) -> None:
+    def _begin_poses(self, database: Database, preset: str, calibration: Any) -> None:
         try:
-            self._poses = LivePoses(database.motions, self._worn, preset)
+            self._poses = LivePoses(database.motions, self._worn, preset, calibration)
             self._tell(warning="", num_dropped=0)
         except Exception as error:  # sensors may get places, or others may come
             self._tell(warning=one_line_of(error))

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from .calibrating import calibration_at
 from .core import core
 from .database import Database, databases
 from .job import Job, Progress
@@ -27,28 +28,48 @@ class Performance:
     """Whether the database holds nothing like it."""
 
 
-def reconstruct_job(database_path: str, take_path: str, *, preset: str, offline: bool) -> Job:
+def reconstruct_job(
+    database_path: str, take_path: str, calibration_path: str, *, preset: str, offline: bool
+) -> Job:
     """The job that reconstructs a take from a database; its result is a Performance.
 
-    Raises InputError, or what the files are at fault for.
+    calibration_path: empty for sensors that are worn as the paper does. Raises InputError, or what the files are at fault for.
     """
     core()
     database = databases.get(database_path)
     take = takes.get(take_path)
+    calibration = calibration_at(calibration_path)
 
     def work(progress: Progress) -> Performance:
-        return reconstruct(database, take, preset=preset, offline=offline, progress=progress)
+        return reconstruct(
+            database,
+            take,
+            calibration=calibration,
+            preset=preset,
+            offline=offline,
+            progress=progress,
+        )
 
     return Job(RECONSTRUCTING, work)
 
 
 def reconstruct(
-    database: Database, take: LoadedTake, *, preset: str, offline: bool, progress: Progress
+    database: Database,
+    take: LoadedTake,
+    *,
+    calibration: Any = None,
+    preset: str,
+    offline: bool,
+    progress: Progress,
 ) -> Performance:
     """The performance of the take. Raises what the core has to say about it."""
     sparse_mocap = core()
-    _, readings = sparse_mocap.take.resampled(take.take, database.rate_hz)
-    solver = sparse_mocap.Reconstructor(database.motions, take.sensors, preset=preset)
+    worn, places = take.take, None
+    if calibration is not None:
+        worn = sparse_mocap.calibration.apply(calibration, take.take)
+        places = sparse_mocap.calibration.places_of(calibration, take.take)
+    _, readings = sparse_mocap.take.resampled(worn, database.rate_hz)
+    solver = sparse_mocap.Reconstructor(database.motions, worn.sites, preset=preset, places=places)
     solved = solver.solve(readings, offline=offline, progress=progress)
     motion = solved.motion
     quality = sparse_mocap.reconstruction

@@ -3,22 +3,22 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from .calibrating import calibration_at
 from .core import capture, core
 from .database import databases
 from .errors import InputError, one_line
 from .job import Job, Progress
 from .live import ANSWER_WITHIN_S, LiveSession, answer_of, one_line_of
+from .new_files import free_path, stamp
 from .reconstruct import Performance, reconstruct
 from .take import takes
 
 GOING_LIVE, STOPPING = "Going live", "Keeping the take"
 LINGER_S = 2.0
-TAKES = "takes"
 
 
 @dataclass(frozen=True)
@@ -69,10 +69,10 @@ def connecting(port: Port, folder: Path) -> LiveSession:
         linger_s=LINGER_S,
         is_temporary=True,
     )
-    logs = folder / f"capture-{_now()}"
+    logs = folder / f"capture-{stamp()}"
 
     def connect() -> Any:
-        return module.start_capture(config, _free(logs))
+        return module.start_capture(config, free_path(logs))
 
     return LiveSession(connect, port.port)
 
@@ -84,13 +84,16 @@ def attaching(session: Any) -> LiveSession:
     return LiveSession(lambda: module.CaptureClient(session), label)
 
 
-def going_live_job(database_path: str) -> Job:
-    """The job that opens the database; its result is that."""
+def going_live_job(database_path: str, calibration_path: str) -> Job:
+    """The job that opens the database; its result is that, and the calibration if there is one."""
     core()
-    return Job(GOING_LIVE, lambda progress: databases.get(database_path))
+    calibration = calibration_at(calibration_path)
+    return Job(GOING_LIVE, lambda progress: (databases.get(database_path), calibration))
 
 
-def stopping_job(session: LiveSession, database_path: str, folder: Path, preset: str) -> Job:
+def stopping_job(
+    session: LiveSession, database_path: str, calibration_path: str, folder: Path, preset: str
+) -> Job:
     """The job that ends the recording, keeps it as a take and reconstructs it; gives a Kept."""
     module = capture()
 
@@ -102,20 +105,18 @@ def stopping_job(session: LiveSession, database_path: str, folder: Path, preset:
             return Kept(path, warnings, None, "no motion database is chosen")
         try:
             performance = reconstruct(
-                databases.get(database_path), takes.get(path),
-                preset=preset, offline=False, progress=progress,
-            )  # fmt: skip
+                databases.get(database_path),
+                takes.get(path),
+                calibration=calibration_at(calibration_path),
+                preset=preset,
+                offline=False,
+                progress=progress,
+            )
         except Exception as error:  # the take is kept all the same
             return Kept(path, warnings, None, one_line(error))
         return Kept(path, warnings, performance)
 
     return Job(STOPPING, work)
-
-
-def takes_folder(blend_path: str) -> Path:
-    """Where takes are kept: beside the .blend file, or in the user's folder before it is saved."""
-    home = Path(blend_path).parent if blend_path else Path.home() / "Sparse Mocap"
-    return home / TAKES
 
 
 def _keep(module: Any, logs: Path, number: int, folder: Path) -> tuple[str, tuple[str, ...]]:
@@ -124,7 +125,7 @@ def _keep(module: Any, logs: Path, number: int, folder: Path) -> tuple[str, tupl
     except module.CaptureError as error:
         raise InputError(f"{one_line_of(error)}; what came is in {logs}") from error
     folder.mkdir(parents=True, exist_ok=True)
-    path = _free(folder / f"take-{_now()}.csv")
+    path = free_path(folder / f"take-{stamp()}.csv")
     core().write_take(path, recorded.take)
     return str(path), tuple(recorded.warnings)
 
@@ -141,16 +142,3 @@ def _options(text: str) -> dict[str, str]:
 
 def _words(text: str) -> list[str]:
     return [word.strip() for word in text.split(",") if word.strip()]
-
-
-def _now() -> str:
-    return time.strftime("%Y%m%d-%H%M%S")
-
-
-def _free(path: Path) -> Path:
-    """The path, numbered when it is taken."""
-    candidate, number = path, 1
-    while candidate.exists():
-        number += 1
-        candidate = path.with_name(f"{path.stem}-{number}{path.suffix}")
-    return candidate

@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import clips, database, import_motion, live, mapping, reconstruct, take
+from . import calibrate, clips, database, import_motion, live, mapping, reconstruct, take
 from .step import forget_timers
 
 CLASSES = (
@@ -12,6 +12,7 @@ CLASSES = (
     *take.CLASSES,
     *reconstruct.CLASSES,
     *live.CLASSES,
+    *calibrate.CLASSES,
     *mapping.CLASSES,
 )
 

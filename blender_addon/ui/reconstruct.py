@@ -37,6 +37,7 @@ class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
         row.prop(settings, "offline", text="Online", toggle=True, invert_checkbox=True)
         row.prop(settings, "offline", text="Offline", toggle=True)
         layout.prop(settings, "start_frame")
+        layout.prop(settings, "calibration")
         if any(is_ours(obj) for obj in context.view_layer.objects):
             row = layout.row()
             row.use_property_split = False

@@ -3,18 +3,15 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
 import numpy as np
-from live_support import DRIVER, OPTIONS, emulated, is_alive, own_runtime, serial_folder, until
+from connected import connected
+from live_support import emulated, is_alive, own_runtime, serial_folder, until
 from support import (
-    SITES,
     Skipped,
     addon,
     error_of,
@@ -26,31 +23,6 @@ from support import (
 )
 
 import blender_addon
-
-
-@contextmanager
-def _connected(tmp_path: Path) -> Iterator[object]:
-    """A session with an emulator that plays the library's take, beside a saved file."""
-    if os.name == "nt":
-        raise Skipped("there are no pseudo-terminals")
-    serial_folder()
-    import sparse_mocap
-
-    (tmp_path / "runtime").mkdir(mode=0o700)
-    take = sparse_mocap.read_take(library().take)
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
-    with own_runtime(tmp_path / "runtime"), emulated(take) as port:
-        chosen = settings()
-        chosen.port, chosen.driver, chosen.driver_options = port, DRIVER, OPTIONS
-        chosen.sites, chosen.database = ", ".join(SITES), str(library().database)
-        assert bpy.ops.sparse_mocap.connect_sensors() == {"FINISHED"}
-        session = addon("session.live").current()
-        until(lambda: session.state.error or len(session.state.sensors) == len(SITES))
-        assert session.state.error == ""
-        try:
-            yield session
-        finally:
-            session.close()
 
 
 def _ticked(num_poses: int) -> list[tuple[object, float]]:
@@ -88,7 +60,7 @@ def _captures() -> list:
 
 
 def test_the_armature_moves_and_nothing_else(tmp_path):
-    with _connected(tmp_path):
+    with connected(tmp_path):
         frame = bpy.context.scene.frame_current
         armature = _go_live()
         shown = _ticked(20)
@@ -107,7 +79,7 @@ def test_the_shown_pose_is_the_cores(tmp_path):
     """Forward kinematics of the core is the oracle."""
     import sparse_mocap
 
-    with _connected(tmp_path):
+    with connected(tmp_path):
         armature = _go_live()
         pose = _ticked(25)[-1][0]
         skeleton = sparse_mocap.MotionDatabase(library().database).skeleton
@@ -123,7 +95,7 @@ def test_the_shown_pose_is_the_cores(tmp_path):
 
 
 def test_a_recording_is_baked_beside_the_file_in_one_undo_step(tmp_path):
-    with _connected(tmp_path) as session:
+    with connected(tmp_path) as session:
         live_armature = _go_live()
         name = live_armature.name
         assert bpy.ops.sparse_mocap.record_take() == {"FINISHED"}
@@ -146,14 +118,14 @@ def test_an_action_is_taken_off_and_kept(tmp_path):
     settings().database, settings().take = str(library().database), str(library().take)
     before = reconstruct()
     action = before.animation_data.action.name
-    with _connected(tmp_path):
+    with connected(tmp_path):
         assert _go_live().name == before.name
         assert bpy.data.objects[before.name].animation_data.action is None
         assert bpy.data.actions[action].use_fake_user
 
 
 def test_undo_and_deletion_end_live_without_harm(tmp_path):
-    with _connected(tmp_path) as session:
+    with connected(tmp_path) as session:
         name = _go_live().name
         _ticked(3)
         with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
@@ -169,7 +141,7 @@ def test_undo_and_deletion_end_live_without_harm(tmp_path):
 
 
 def test_rendering_and_edit_mode_are_left_alone(tmp_path):
-    with _connected(tmp_path) as session:
+    with connected(tmp_path) as session:
         armature = _go_live()
         _ticked(3)
         scene, compat = addon("scene.live"), addon("scene.compat")
@@ -190,7 +162,7 @@ def test_rendering_and_edit_mode_are_left_alone(tmp_path):
 
 
 def test_another_file_ends_the_session_and_its_capture(tmp_path):
-    with _connected(tmp_path) as session:
+    with connected(tmp_path) as session:
         _go_live()
         [capture] = _captures()
         bpy.ops.wm.read_homefile(use_empty=True)
@@ -200,7 +172,7 @@ def test_another_file_ends_the_session_and_its_capture(tmp_path):
 
 
 def test_unregister_leaves_no_capture(tmp_path):
-    with _connected(tmp_path) as session:
+    with connected(tmp_path) as session:
         [capture] = _captures()
         blender_addon.unregister()
         assert not session.is_running
@@ -209,7 +181,7 @@ def test_unregister_leaves_no_capture(tmp_path):
 
 
 def test_unregister_leaves_a_recording_which_is_found_again(tmp_path):
-    with _connected(tmp_path):
+    with connected(tmp_path):
         bpy.ops.sparse_mocap.record_take()
         [capture] = _captures()
         blender_addon.unregister()
@@ -231,7 +203,7 @@ def test_unregister_leaves_a_recording_which_is_found_again(tmp_path):
 def test_disconnecting_leaves_a_capture_that_others_need(tmp_path):
     from sparse_mocap.capture import CaptureClient
 
-    with _connected(tmp_path):
+    with connected(tmp_path):
         [capture] = _captures()
         other = CaptureClient(capture)
         assert bpy.ops.sparse_mocap.disconnect_sensors() == {"FINISHED"}

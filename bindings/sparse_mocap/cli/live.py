@@ -16,6 +16,7 @@ from rich.console import Console
 from rich.live import Live
 
 from .. import MotionDatabase
+from ..calibration_file import read_calibration
 from ..capture.client import CaptureClient, start_capture
 from ..capture.errors import CaptureError
 from .capture_options import capture_options, config_of
@@ -37,6 +38,9 @@ _SETTLE_S = 1.0
 @click.option(
     "--preset", default="default", show_default=True, help="The method's settings by name."
 )
+@click.option(
+    "--calibration", "calibration_path", type=FilePath, help="The sensors' calibration (.json)."
+)
 @click.option("--positions", type=FilePath, help="Streams the joints' positions to a file (.csv).")
 @click.option("--seconds", type=click.FloatRange(0.1), help="Ends by itself.")
 @click.option(
@@ -52,6 +56,7 @@ def live(
     database_path: Path,
     method: str,
     preset: str,
+    calibration_path: Path | None,
     positions: Path | None,
     seconds: float | None,
     attach: int | None,
@@ -63,6 +68,7 @@ def live(
     """
     check_presets(method, [preset])
     database = MotionDatabase(database_path)
+    calibration = None if calibration_path is None else read_calibration(calibration_path)
     with ExitStack() as stack:
         if attach is not None:
             client = stack.enter_context(attached(attach))
@@ -70,7 +76,7 @@ def live(
             config = config_of(ports, driver, baud, options, sites)
             client = _own_capture(stack, config)
         status = _settled(client, sites)
-        session = LiveSession(client, status, database, method, preset)
+        session = LiveSession(client, status, database, method, preset, calibration)
         if positions is not None:
             session.stream_to(stack.enter_context(positions.open("w", encoding="utf-8")))
         _watch(stack, client, session, seconds)

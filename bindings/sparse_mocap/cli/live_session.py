@@ -10,6 +10,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from .. import MotionDatabase, PoseEstimate, Reconstructor, site_names
+from ..calibration import Calibration, worn_as
 from ..capture.client import CaptureClient
 from ..capture.errors import CaptureError
 from ..capture.live_readings import LiveReadings
@@ -28,13 +29,17 @@ class LiveSession:
         database: MotionDatabase,
         method: str,
         preset: str,
+        calibration: Calibration | None = None,
     ) -> None:
         self._client = client
-        self.sites = [str(sensor["site"]) for sensor in status["sensors"]]
+        self._worn = worn_as(calibration, [str(sensor["site"]) for sensor in status["sensors"]])
+        self.sites = self._worn.sites
         unknown = [site for site in self.sites if site not in site_names()]
         if unknown:
             raise CaptureError(f"sensor {unknown[0]!r} has no site; say with --sites where it is")
-        self._reconstructor = Reconstructor(database, self.sites, method=method, preset=preset)
+        self._reconstructor = Reconstructor(
+            database, self.sites, method=method, preset=preset, places=self._worn.places
+        )
         self._readings = LiveReadings(list(range(len(self.sites))), database.rate_hz)
         self._joints = database.skeleton.names
         self._times: deque[float] = deque(maxlen=self._reconstructor.latency_frames + 1)
@@ -56,7 +61,7 @@ class LiveSession:
         for reading in self._readings.ready(time.monotonic()):
             begin = time.perf_counter()
             self._times.append(reading.time_s)
-            estimate = self._reconstructor.step(reading.specific_force)
+            estimate = self._reconstructor.step(self._worn.ideal(reading.specific_force))
             self.step_s.append(time.perf_counter() - begin)
             if estimate is not None:
                 self._take_up(self._times[0], estimate)

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How the sensors are strapped on, in the sidebar."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+from bpy.types import Context, Panel, UILayout
+
+from ..scene.settings import settings_of
+from ..session import live
+from ..session.calibrating import CALIBRATING, calibrations
+from . import text
+from .step import StepPanel, action_button, redraw_soon, tick
+
+
+class SPARSEMOCAP_PT_calibration(StepPanel, Panel):
+    """The calibration in use, and how to make one."""
+
+    bl_idname = "SPARSEMOCAP_PT_calibration"
+    bl_parent_id = "SPARSEMOCAP_PT_live"
+    bl_label = "Calibration"
+
+    def draw_header_preset(self, context: Context) -> None:
+        """A tick when there is one."""
+        tick(self.layout, calibrations, bpy.path.abspath(settings_of(context.scene).calibration))
+
+    def draw(self, context: Context) -> None:
+        """The file, what it says of each sensor, and the button."""
+        layout, settings = self.layout, settings_of(context.scene)
+        layout.prop(settings, "calibration", text="")
+        if settings.calibration:
+            _contents(layout, context, bpy.path.abspath(settings.calibration))
+        else:
+            text.paragraph(
+                layout, context, "Without one, wear the sensors as the manual shows", icon="INFO"
+            )
+        session = live.current()
+        if session is None or not session.state.is_connected:
+            return
+        layout.prop(settings, "height_m")
+        is_ready = bool(session.state.sensors) and session.state.recording is None
+        action_button(
+            layout, "sparse_mocap.calibrate_sensors", "ORIENTATION_GIMBAL", CALIBRATING,
+            is_ready=is_ready,
+        )  # fmt: skip
+
+
+def _contents(layout: UILayout, context: Context, path: str) -> None:
+    entry = calibrations.peek(path)
+    if entry.is_opening:
+        layout.label(text="Reading the calibration", icon="SORTTIME")
+        redraw_soon()
+    elif entry.error:
+        text.error(layout, context, entry.error)
+    else:
+        text.facts(layout, [_row(sensor) for sensor in entry.value.sensors.values()])
+        for note in entry.value.notes:
+            text.paragraph(layout, context, note, icon="INFO")
+
+
+def _row(sensor: Any) -> tuple[str, str]:
+    name = sensor.site.replace("_", " ")
+    return name, f"{sensor.gravity:.2f} at rest, quality {sensor.quality:.0%}"
+
+
+CLASSES = (SPARSEMOCAP_PT_calibration,)

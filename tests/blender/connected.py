@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The add-on connected to an emulator."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import bpy
+from live_support import DRIVER, OPTIONS, emulated, own_runtime, serial_folder, until
+from support import SITES, Skipped, addon, library, settings
+
+
+@contextmanager
+def connected(tmp_path: Path, take_path: Path | None = None) -> Iterator[object]:
+    """A session with an emulator that plays a take (the library's), beside a saved file."""
+    if os.name == "nt":
+        raise Skipped("there are no pseudo-terminals")
+    serial_folder()
+    import sparse_mocap
+
+    (tmp_path / "runtime").mkdir(mode=0o700)
+    take = sparse_mocap.read_take(take_path or library().take)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    with own_runtime(tmp_path / "runtime"), emulated(take) as port:
+        chosen = settings()
+        chosen.port, chosen.driver, chosen.driver_options = port, DRIVER, OPTIONS
+        chosen.sites, chosen.database = ", ".join(SITES), str(library().database)
+        assert bpy.ops.sparse_mocap.connect_sensors() == {"FINISHED"}
+        session = addon("session.live").current()
+        until(lambda: session.state.error or len(session.state.sensors) == len(SITES))
+        assert session.state.error == ""
+        try:
+            yield session
+        finally:
+            session.close()

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import sys
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("sparse_mocap._core")
+pytest.importorskip("serial")
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import sparse_mocap
+from calibration_support import LEAD_S, PHASES_S, planted, wait_for_lead
+from live_support import DRIVER, OPTIONS, emulated, own_runtime, until
+from sparse_mocap.calibration import CalibrationError, worn_as
+from sparse_mocap.calibration_file import read_calibration
+
+from blender_addon.session import calibrating, live, sensors
+from blender_addon.session.errors import InputError
+from blender_addon.session.job import Cancelled
+from blender_addon.session.live_poses import LivePoses
+
+SITES = ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
+PHASES = tuple(
+    calibrating.Phase(phase.name, phase.text, seconds)
+    for phase, seconds in zip(calibrating.PHASES, PHASES_S, strict=True)
+)
+
+
+@pytest.fixture(scope="module")
+def performance(tmp_path_factory):
+    """A take of the guided movements, and how its sensors are turned."""
+    return planted(tmp_path_factory.mktemp("planted"))
+
+
+@pytest.fixture(autouse=True)
+def runtime(tmp_path):
+    folder = tmp_path / "runtime"
+    folder.mkdir(mode=0o700)
+    with own_runtime(folder):
+        yield
+        live.end()
+
+
+@pytest.fixture
+def session(performance, tmp_path):
+    with emulated(sparse_mocap.read_take(performance[0])) as port:
+        chosen = sensors.Port(port, DRIVER, options=OPTIONS, sites=", ".join(SITES))
+        live.begin(sensors.connecting(chosen, tmp_path / "takes"))
+        session = live.current()
+        until(lambda: session.state.error or len(session.state.sensors) == len(SITES))
+        yield session
+        live.end()
+
+
+def test_what_was_planted_is_found_and_kept(performance, session, tmp_path):
+    wait_for_lead(session)
+    told = []
+    job = calibrating.calibrating_job(session, tmp_path / "takes", 1.75, PHASES)
+    result = job.run(lambda: told.append((job.fraction, job.what)))
+    sensors_found = result.calibration.sensors
+    assert list(sensors_found) == SITES
+    for site, R_site_sensor in zip(SITES, performance[1], strict=True):
+        off = sensors_found[site].R_site_sensor @ R_site_sensor.T
+        assert np.degrees(np.arccos(min((np.trace(off) - 1) / 2, 1.0))) < 5.0, site
+        assert sensors_found[site].scale == pytest.approx(1.03, rel=0.01)
+    kept = read_calibration(result.path)
+    assert kept.sensors["left_ankle"].place == sensors_found["left_ankle"].place
+    assert Path(result.path).parent == tmp_path / "takes"
+    assert calibrating.calibration_at(result.path).sensors.keys() == kept.sensors.keys()
+    fractions = [fraction for fraction, _ in told]
+    assert fractions == sorted(fractions)
+    for phase in PHASES:
+        assert any(what.startswith(phase.text) for _, what in told)
+    until(lambda: session.state.recording is None)
+
+
+def test_cancelling_ends_the_recording_and_leaves_no_file(session, tmp_path):
+    job = calibrating.calibrating_job(session, tmp_path / "takes", 1.75)
+    threading.Timer(0.5, job.cancel).start()
+    with pytest.raises(Cancelled):
+        job.run()
+    until(lambda: session.state.recording is None)
+    assert list((tmp_path / "takes").glob("*.json")) == []
+
+
+def test_who_fidgets_is_told_so_in_a_line(session, tmp_path):
+    """The performer bends the elbows when it is time to stand still."""
+    (still,) = (phase for phase in PHASES if phase.name == "stand")
+    bending_s = LEAD_S + sum(PHASES_S[:3]) + 1.0
+    until(lambda: session.state.sensors[0]["samples"] >= 100 * bending_s)
+    job = calibrating.calibrating_job(session, tmp_path / "takes", 1.75, (still,))
+    with pytest.raises(CalibrationError, match="still") as error:
+        job.run()
+    assert len(str(error.value).splitlines()) == 1
+    assert list((tmp_path / "takes").glob("*.json")) == []
+
+
+def test_not_while_something_is_recorded(session, tmp_path):
+    live.answer_of(session.record(), 5.0)
+    until(lambda: session.state.recording is not None)
+    with pytest.raises(InputError, match="stop it"):
+        calibrating.calibrating_job(session, tmp_path, 1.75)
+
+
+def test_live_poses_of_calibrated_sensors_are_those_of_ideal_ones(performance, tmp_path):
+    """Turning what was filtered is filtering what was turned."""
+    take = sparse_mocap.read_take(performance[0])
+    path = tmp_path / "db.smdb"
+    body = Path(performance[0]).with_name("body.bvh")
+    sparse_mocap.build_database([body], path)
+    database = sparse_mocap.MotionDatabase(path)
+    found = {
+        site: sparse_mocap.SensorCalibration(site, 1.03, R, 1.0, np.zeros(3), 1.0, True, True,
+                                             9.81, 0.0, 9.0, 0.1)
+        for site, R in zip(SITES, performance[1], strict=True)
+    }  # fmt: skip
+    calibration = sparse_mocap.calibration.Calibration(found)
+    _, wanted = sparse_mocap.resampled(
+        sparse_mocap.calibration.apply(calibration, take), database.rate_hz
+    )
+    _, raw = sparse_mocap.resampled(take, database.rate_hz)
+    worn = worn_as(calibration, SITES)
+    assert np.abs([worn.ideal(row) for row in raw] - wanted).max() < 1e-9
+    poses = LivePoses(database, dict(enumerate(SITES)), "default", calibration)
+    assert poses.advance(np.empty(0, sparse_mocap.capture.sample_log.SAMPLE)) is None
+    with pytest.raises(CalibrationError, match="calibrate again"):
+        LivePoses(database, {0: "chest"}, "default", calibration)

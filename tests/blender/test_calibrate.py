@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Calibration in Blender, of emulated sensors that are turned on their limbs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import bpy
+import numpy as np
+from calibration_support import PHASES_S, planted, wait_for_lead
+from connected import connected
+from live_support import until
+from support import (
+    SITES,
+    addon,
+    error_of,
+    evaluated_points,
+    in_blenders_axes,
+    library,
+    reconstruct,
+    settings,
+)
+
+
+@contextmanager
+def _short_phases() -> Iterator[None]:
+    calibrating = addon("session.calibrating")
+    before = calibrating.PHASES
+    calibrating.PHASES = tuple(
+        replace(phase, seconds=seconds) for phase, seconds in zip(before, PHASES_S, strict=True)
+    )
+    try:
+        yield
+    finally:
+        calibrating.PHASES = before
+
+
+def test_a_calibration_is_made_kept_and_used(tmp_path):
+    take, R_site_sensor = planted(tmp_path)
+    with _short_phases(), connected(tmp_path, take) as session:
+        assert bpy.ops.sparse_mocap.go_live() == {"FINISHED"}
+        until(lambda: session.state.is_live)
+        wait_for_lead(session)
+        assert bpy.ops.sparse_mocap.calibrate_sensors() == {"FINISHED"}
+        path = settings().calibration
+        assert Path(path).parent == tmp_path / "takes"
+        found = addon("session.calibrating").calibrations.get(path)
+        for site, wanted in zip(SITES, R_site_sensor, strict=True):
+            off = found.sensors[site].R_site_sensor @ wanted.T
+            assert np.degrees(np.arccos(min((np.trace(off) - 1) / 2, 1.0))) < 5.0, site
+        until(lambda: session._poses is not None and session._poses._worn.places is not None)
+        used = session._poses._worn
+        assert np.allclose(used.axes[0], found.sensors[SITES[0]].scale
+                           * found.sensors[SITES[0]].R_site_sensor)  # fmt: skip
+        assert addon("scene.prompt")._handler is None
+
+
+def test_a_take_is_reconstructed_as_the_calibration_says(tmp_path):
+    """The same movements, as read by ideal sensors and by turned ones that are calibrated."""
+    import sparse_mocap
+    from sparse_mocap.calibration import Calibration, SensorCalibration, apply
+    from sparse_mocap.calibration_file import write_calibration
+
+    take, R_site_sensor = planted(tmp_path)
+    found = {
+        site: SensorCalibration(site, 1.03, R, 0.7, np.zeros(3), 1.0, True, True,
+                                9.81, 0.0, 9.0, 0.1)
+        for site, R in zip(SITES, R_site_sensor, strict=True)
+    }  # fmt: skip
+    write_calibration(tmp_path / "sensors.json", Calibration(found))
+    ideal = apply(Calibration(found), sparse_mocap.read_take(take))
+    chosen = settings()
+    chosen.database, chosen.take = str(library().database), str(take)
+    chosen.calibration = str(tmp_path / "sensors.json")
+    bpy.context.scene.render.fps = 25
+    armature = reconstruct()
+    database = sparse_mocap.MotionDatabase(library().database)
+    _, readings = sparse_mocap.resampled(ideal, database.rate_hz)
+    solver = sparse_mocap.Reconstructor(database, ideal.sites, places=[0.7] * 4)
+    wanted = in_blenders_axes(solver.solve(readings).motion.joint_positions("world"))
+    for index in (10, 200, 400):
+        shown = evaluated_points(armature, index + 1, database.skeleton.names)
+        assert np.abs(shown - wanted[index]).max() < 1e-3
+
+
+def test_a_calibration_that_is_none_is_said_in_one_line(tmp_path):
+    chosen = settings()
+    chosen.database, chosen.take = str(library().database), str(library().take)
+    (tmp_path / "bad.json").write_text("{}")
+    for path, words in (("missing.json", "No such file"), ("bad.json", "is no calibration")):
+        chosen.calibration = str(tmp_path / path)
+        assert words in error_of(bpy.ops.sparse_mocap.reconstruct)
+    assert not bpy.data.actions
+
+
+def test_without_sensors_there_is_nothing_to_calibrate():
+    assert "Connect" in error_of(bpy.ops.sparse_mocap.calibrate_sensors)
