@@ -38,22 +38,36 @@ def _draw() -> None:
     job = jobs.current()
     if job is None or job.label != CALIBRATING or job.is_cancelled:
         return
-    text, _, seconds = job.what.rpartition(": ")
-    region = bpy.context.region
-    _line(text, region.width, 0.62 * region.height)
-    _line(seconds, region.width, 0.5 * region.height)
+    what, _, seconds = job.what.rpartition(": ")
+    headline, _, hint = what.partition(", ")
+    left, width, height = _free_view()
+    _line(headline, _LARGEST_PX, left, width, 0.62 * height)
+    _line(hint, 0.5 * _LARGEST_PX, left, width, 0.62 * height - 0.9 * _LARGEST_PX)
+    _line(seconds, 1.5 * _LARGEST_PX, left, width, 0.62 * height - 2.8 * _LARGEST_PX)
 
 
-def _line(text: str, width: int, y: float) -> None:
-    """Centred, and as large as the width allows."""
-    blf.size(_FONT, _LARGEST_PX)
+def _free_view() -> tuple[float, float, float]:
+    """Left end, width and height of what the sidebar and the tools leave of the viewport, px."""
+    whole, left, right = bpy.context.region, 0.0, 0.0
+    if bpy.context.preferences.system.use_region_overlap:
+        for region in bpy.context.area.regions:
+            if region.type == "UI" and region.width > 1:
+                right = region.width
+            elif region.type == "TOOLS" and region.width > 1:
+                left = region.width
+    return left, max(whole.width - left - right, 1.0), whole.height
+
+
+def _line(text: str, size: float, left: float, width: float, y: float) -> None:
+    """Centred, and smaller where it would not fit."""
+    blf.size(_FONT, size)
     length = blf.dimensions(_FONT, text)[0]
     if length > 0.9 * width:
-        blf.size(_FONT, _LARGEST_PX * 0.9 * width / length)
+        blf.size(_FONT, size * 0.9 * width / length)
         length = blf.dimensions(_FONT, text)[0]
     blf.enable(_FONT, blf.SHADOW)
     blf.shadow(_FONT, 5, *_SHADOW)
     blf.color(_FONT, *_COLOUR)
-    blf.position(_FONT, 0.5 * (width - length), y, 0.0)
+    blf.position(_FONT, left + 0.5 * (width - length), y, 0.0)
     blf.draw(_FONT, text)
     blf.disable(_FONT, blf.SHADOW)

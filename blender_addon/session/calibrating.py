@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Calibration: the performer is led through a few movements, which tell how the sensors are worn."""
+"""Calibration: the performer is led through movements that tell how the sensors are worn."""
 
 from __future__ import annotations
 
@@ -28,16 +28,17 @@ class Phase:
     name: str
     """"stand", a guided movement's name, or empty while the performer gets ready for the next."""
     text: str
+    """What to do, and after the first comma how."""
     seconds: float
 
 
 PHASES = (
-    Phase("", "Get ready to stand still, arms hanging, palms at the thighs", 5.0),
+    Phase("", "Get ready, to stand still with hanging arms", 5.0),
     Phase("stand", "Stand still, arms hanging, palms at the thighs", 3.0),
-    Phase("", "Next: bend both elbows five times, thumbs forward", 4.0),
-    Phase("bend_elbows", "Bend both elbows five times, thumbs forward, upper arms still", 8.0),
-    Phase("", "Next: squat five times on the spot", 4.0),
-    Phase("squat", "Squat five times on the spot", 10.0),
+    Phase("", "Next: elbows, bend both five times with the thumbs forward", 4.0),
+    Phase("bend_elbows", "Bend both elbows, five times, thumbs forward, upper arms still", 8.0),
+    Phase("", "Next: squats, five of them on the spot", 4.0),
+    Phase("squat", "Squat, five times, heels on the ground", 10.0),
 )
 
 

@@ -33,7 +33,8 @@ def reconstruct_job(
 ) -> Job:
     """The job that reconstructs a take from a database; its result is a Performance.
 
-    calibration_path: empty for sensors that are worn as the paper does. Raises InputError, or what the files are at fault for.
+    calibration_path: empty for sensors that are worn as the paper does. Raises InputError, or what
+    the files are at fault for.
     """
     core()
     database = databases.get(database_path)

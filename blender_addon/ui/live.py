@@ -7,11 +7,12 @@ from bpy.types import Context, Panel, UILayout
 
 from ..scene.settings import settings_of
 from ..session import live, sensors
+from ..session.calibrating import CALIBRATING
 from ..session.core import missing_reason
 from ..session.live import LiveSession, LiveState
 from ..session.surroundings import surroundings
 from . import text
-from .step import StepPanel, action_button, redraw_soon
+from .step import StepPanel, action_button, job_is_running, redraw_soon
 
 _ICONS = {"live": "RADIOBUT_ON", "silent": "RADIOBUT_OFF"}
 
@@ -95,7 +96,8 @@ def _session(layout: UILayout, context: Context, session: LiveSession) -> None:
             text.paragraph(layout, context, said, icon="INFO")
     _sensors(layout, state)
     _live(layout, context, session)
-    _recording(layout, context, state)
+    if not job_is_running(CALIBRATING):
+        _recording(layout, context, state)
 
 
 def _sensors(layout: UILayout, state: LiveState) -> None:

@@ -28,8 +28,10 @@ from support import SITES  # noqa: E402
 import blender_addon  # noqa: E402 - found by the lines above
 from blender_addon import ui  # noqa: E402
 from blender_addon.scene import live as live_scene  # noqa: E402
+from blender_addon.scene import prompt  # noqa: E402
 from blender_addon.session import job as jobs  # noqa: E402
 from blender_addon.session import live  # noqa: E402
+from blender_addon.ui.calibrate import SPARSEMOCAP_PT_calibration as CalibrationPanel  # noqa: E402
 from blender_addon.ui.live import SPARSEMOCAP_PT_live as LivePanel  # noqa: E402
 
 TIMEOUT_S = 40.0
@@ -120,6 +122,26 @@ def points() -> np.ndarray:
     return np.array([bone.tail for bone in bones])
 
 
+def calibrate_and_escape(session: live.LiveSession) -> Steps:
+    """What to do stands in the viewport until Esc, which leaves nothing."""
+    done = call(bpy.ops.sparse_mocap.calibrate_sensors, "INVOKE_DEFAULT", True)
+    assert done == {"RUNNING_MODAL"}
+    num_shown = len(shown_late_s)
+    yield from until(lambda: jobs.current() and jobs.current().what.startswith("Stand still"))
+    assert prompt._handler is not None
+    assert len(shown_late_s) > num_shown, "calibrating holds up the poses"
+    call(bpy.ops.view3d.view_selected)
+    yield 0.7
+    picture("calibrating.png")
+    window = view()["window"]
+    for value in ("PRESS", "RELEASE"):
+        window.event_simulate(type="ESC", value=value, x=600, y=400)
+        yield 0.1
+    yield from until(lambda: jobs.current() is None and session.state.recording is None)
+    yield from until(lambda: prompt._handler is None)
+    assert bpy.context.scene.sparse_mocap.calibration == ""
+
+
 def play() -> Steps:
     drawn = watch_draws()
     watch_latency()
@@ -138,6 +160,8 @@ def play() -> Steps:
     assert session.state.error == "", session.state.error
     assert call(bpy.ops.sparse_mocap.go_live, "INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
     yield from until(lambda: len(shown_late_s) > 5)
+    call(bpy.ops.view3d.view_selected)
+    yield from calibrate_and_escape(session)
     call(bpy.ops.view3d.view_selected)
     call(bpy.ops.sparse_mocap.record_take)
     yield 0.7
@@ -180,7 +204,7 @@ def tick() -> float | None:
 bpy.context.preferences.view.show_splash = False
 for panel in ui.CLASSES:
     if issubclass(panel, bpy.types.Panel):
-        panel.bl_options = set() if panel is LivePanel else {"DEFAULT_CLOSED"}
+        panel.bl_options = set() if panel in (LivePanel, CalibrationPanel) else {"DEFAULT_CLOSED"}
 blender_addon.register()
 bpy.ops.wm.save_as_mainfile(filepath=str(Path(FOLDER) / "scene.blend"))
 steps = play()

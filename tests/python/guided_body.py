@@ -97,9 +97,7 @@ def main(out: Path, planted: Path, *times_s: str) -> None:
     body = guided(skeleton, (elbows_s, squats_s), (squats_s, end_s), end_s)
     ideal = simulated(body, list(SITES), RATE_HZ)
     turned = planted_turns(np.random.default_rng(5))
-    sensors = {
-        site: worn(ideal.sensors[site], turned[i], 1.03, i) for i, site in enumerate(SITES)
-    }
+    sensors = {site: worn(ideal.sensors[site], turned[i], 1.03, i) for i, site in enumerate(SITES)}
     write_take(out, Take(sensors))
     write_bvh(out.with_name("body.bvh"), body)
     np.save(planted, np.array([turn.as_matrix() for turn in turned]))
