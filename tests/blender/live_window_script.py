@@ -103,6 +103,7 @@ def open_panel(drawn: dict[str, int]) -> Steps:
     region = sidebar()
     if hasattr(region, "active_panel_category"):
         region.active_panel_category = LivePanel.bl_category
+        region.tag_redraw()  # 4.3 does not by itself
         yield 0.3
     else:
         for y in range(region.y + region.height - 15, region.y, -20):
