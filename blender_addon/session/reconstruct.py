@@ -29,7 +29,7 @@ class Performance:
 
 
 def reconstruct_job(
-    database_path: str, take_path: str, calibration_path: str, *, preset: str, offline: bool
+    database_path: str, take_path: str, calibration_path: str = "", *, preset: str, offline: bool
 ) -> Job:
     """The job that reconstructs a take from a database; its result is a Performance.
 
