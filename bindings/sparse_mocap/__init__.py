@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         CounterUnwrapper,
         FormatError,
         HumanoidMapping,
+        InclinationFilter,
         MappingError,
         Motion,
         MotionDatabase,
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
         filtered_at,
         find_motion_files,
         guided_movements,
+        inclinations,
         keep_alive_commands,
         map_humanoid,
         method_names,
@@ -73,6 +75,7 @@ if TYPE_CHECKING:
     from .mappings import forget_mapping, mapping_folder, remember_mapping, to_standard
     from .noise import NoiseModel, noise_presets, noisy
     from .positions import read_positions, write_positions
+    from .readings import Readings, readings_of
     from .take import SensorRecord, Take, TakeError, read_take, resampled, simulated, write_take
 
 __all__ = [
@@ -88,12 +91,14 @@ __all__ = [
     "CounterUnwrapper",
     "FormatError",
     "HumanoidMapping",
+    "InclinationFilter",
     "MappingError",
     "Motion",
     "MotionDatabase",
     "NoiseModel",
     "PoseEstimate",
     "ProgressReport",
+    "Readings",
     "Reconstruction",
     "Reconstructor",
     "Resampler",
@@ -121,6 +126,7 @@ __all__ = [
     "find_motion_files",
     "forget_mapping",
     "guided_movements",
+    "inclinations",
     "keep_alive_commands",
     "map_humanoid",
     "mapping_folder",
@@ -136,6 +142,7 @@ __all__ = [
     "read_motion",
     "read_positions",
     "read_take",
+    "readings_of",
     "remember_mapping",
     "resampled",
     "simulate",
@@ -166,6 +173,7 @@ _PYTHON_HOMES = {
     ),
     **dict.fromkeys(("read_calibration", "write_calibration"), ".calibration_file"),
     **dict.fromkeys(("read_positions", "write_positions"), ".positions"),
+    **dict.fromkeys(("Readings", "readings_of"), ".readings"),
     **dict.fromkeys(
         ("SensorRecord", "Take", "TakeError", "read_take", "resampled", "simulated", "write_take"),
         ".take",

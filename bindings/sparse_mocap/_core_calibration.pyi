@@ -59,6 +59,27 @@ def align_in_time(
 ) -> dict[str, Any]:
     """The lag of the second signal: lag_s, correlation, runner_up, event_s, is_found."""
 
+class InclinationFilter:
+    """The direction against gravity in a sensor's axes, as its samples come."""
+
+    def __init__(self) -> None: ...
+    def update(
+        self, time_s: float, specific_force: ArrayLike, angular_velocity: ArrayLike
+    ) -> Floats:
+        """Takes the next sample (s, m/s^2, rad/s) and returns a unit vector (3,).
+
+        NaN in the first half second, and until the gyroscope has turned.
+        """
+
+def inclinations(
+    times_s: ArrayLike,
+    specific_force: ArrayLike,
+    angular_velocity: ArrayLike,
+    *,
+    offline: bool = False,
+) -> Floats:
+    """The same for a whole recording, (T, 3); offline averages both ways and is never unsure."""
+
 def standing_pose_names() -> list[str]: ...
 def guided_movements() -> dict[str, tuple[str, list[str]]]:
     """Each movement's instruction and the sites that it calibrates."""

@@ -64,8 +64,10 @@ class Reconstructor:
         method: str = "tautges2011",
         preset: str = "default",
         places: Sequence[float] | None = None,
+        quantities: Sequence[str] | None = None,
         excluded_clips: Sequence[int] = (),
-    ) -> None: ...
+    ) -> None:
+        """quantities: of each entry of sites "specific_force" or "up", a unit vector's readings."""
     @property
     def latency_frames(self) -> int:
         """How many readings an estimate of step() lags behind."""

@@ -111,13 +111,28 @@ def resampled(take: Take, rate_hz: float) -> tuple[Floats, Floats]:
     the take. Sensors come in the take's order; where one is silent, before its first sample, after
     its last or for longer than LONGEST_GAP_S, its reading is NaN.
     """
+    times = evenly(take, rate_hz)
+    parts = [filtered_channel(r.times_s, r.specific_force, times) for r in take.sensors.values()]
+    return times, np.stack(parts, axis=1)
+
+
+def evenly(take: Take, rate_hz: float) -> Floats:
+    """Returns evenly spaced times (T,) from the take's begin to its end."""
     num_times = int((take.end_s - take.begin_s) * rate_hz + 1e-6) + 1
-    times = take.begin_s + np.arange(num_times) / rate_hz
-    readings = np.empty((len(times), len(take.sensors), 3))
-    for index, record in enumerate(take.sensors.values()):
-        readings[:, index] = filtered_at(record.times_s, record.specific_force, times)
-        readings[_is_silent(record.times_s, times), index] = np.nan
-    return times, readings
+    return take.begin_s + np.arange(num_times) / rate_hz
+
+
+def filtered_channel(times_s: Floats, values: Floats, wanted_s: Floats) -> Floats:
+    """Returns samples (T, 3) through the database's low-pass at other times; NaN in silences.
+
+    Samples that are not finite are none.
+    """
+    known = np.isfinite(values).all(axis=1)
+    if not known.any():
+        return np.full((len(wanted_s), 3), np.nan)
+    read = np.array(filtered_at(times_s[known], values[known], wanted_s))
+    read[_is_silent(times_s[known], wanted_s)] = np.nan
+    return read
 
 
 def simulated(

@@ -66,12 +66,20 @@ std::vector<Reading> readings_from(const Doubles& specific_force, std::size_t nu
 }
 
 std::vector<WornSensor> sensors_from(const std::vector<std::string>& sites,
-                                     const std::optional<std::vector<double>>& places) {
+                                     const std::optional<std::vector<double>>& places,
+                                     const std::optional<std::vector<std::string>>& quantities) {
   if (places && places->size() != sites.size())
     throw py::value_error("places must have one entry a site");
+  if (quantities && quantities->size() != sites.size())
+    throw py::value_error("quantities must have one entry a site");
   std::vector<WornSensor> sensors;
-  for (std::size_t s = 0; s < sites.size(); ++s)
-    sensors.push_back({find_site(sites[s]), places ? (*places)[s] : 1.0});
+  for (std::size_t s = 0; s < sites.size(); ++s) {
+    const std::string quantity = quantities ? (*quantities)[s] : "specific_force";
+    if (quantity != "specific_force" && quantity != "up")
+      throw py::value_error("a quantity is 'specific_force' or 'up', not '" + quantity + "'");
+    sensors.push_back({find_site(sites[s]), places ? (*places)[s] : 1.0,
+                       quantity == "up" ? Quantity::up : Quantity::specific_force});
+  }
   return sensors;
 }
 

@@ -50,7 +50,9 @@ Progress progress_from(const std::optional<py::function>& callback,
 // Readings (T, S, 3) as the core takes them.
 std::vector<Reading> readings_from(const Doubles& specific_force, std::size_t num_sensors);
 
-std::vector<WornSensor> sensors_from(const std::vector<std::string>& sites,
-                                     const std::optional<std::vector<double>>& places);
+// places and quantities ("specific_force" or "up") have one entry a site, when they are given.
+std::vector<WornSensor> sensors_from(
+    const std::vector<std::string>& sites, const std::optional<std::vector<double>>& places,
+    const std::optional<std::vector<std::string>>& quantities = std::nullopt);
 
 }  // namespace sparse_mocap::python

@@ -60,9 +60,10 @@ class BoundReconstructor {
   BoundReconstructor(Database database, const std::vector<std::string>& sites,
                      const std::string& method, const std::string& preset,
                      const std::optional<std::vector<double>>& places,
+                     const std::optional<std::vector<std::string>>& quantities,
                      const std::vector<int>& excluded_clips)
       : database_(std::move(database)), num_sensors_(sites.size()) {
-    const auto sensors = sensors_from(sites, places);
+    const auto sensors = sensors_from(sites, places, quantities);
     const py::gil_scoped_release release;
     method_ = make_method(method, preset, database_, sensors, excluded_clips);
   }
@@ -246,10 +247,10 @@ void bind_reconstruction(py::module_& m) {
   py::class_<BoundReconstructor>(m, "Reconstructor")
       .def(py::init<Database, const std::vector<std::string>&, const std::string&,
                     const std::string&, const std::optional<std::vector<double>>&,
-                    const std::vector<int>&>(),
+                    const std::optional<std::vector<std::string>>&, const std::vector<int>&>(),
            py::arg("database"), py::arg("sites"), py::kw_only(), py::arg("method") = "tautges2011",
            py::arg("preset") = "default", py::arg("places") = py::none(),
-           py::arg("excluded_clips") = std::vector<int>{})
+           py::arg("quantities") = py::none(), py::arg("excluded_clips") = std::vector<int>{})
       .def_property_readonly("latency_frames", &BoundReconstructor::latency_frames)
       .def("step", &BoundReconstructor::step, py::arg("specific_force"))
       .def("flush", &BoundReconstructor::flush)

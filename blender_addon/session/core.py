@@ -14,6 +14,7 @@ MODULES = (
     "sparse_mocap._core",
     "sparse_mocap.calibration_file",
     "sparse_mocap.mappings",
+    "sparse_mocap.readings",
     "sparse_mocap.reconstruction",
     "sparse_mocap.take",
 )

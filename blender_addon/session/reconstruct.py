@@ -69,9 +69,11 @@ def reconstruct(
     if calibration is not None:
         worn = sparse_mocap.calibration.apply(calibration, take.take)
         places = sparse_mocap.calibration.places_of(calibration, take.take)
-    _, readings = sparse_mocap.take.resampled(worn, database.rate_hz)
-    solver = sparse_mocap.Reconstructor(database.motions, worn.sites, preset=preset, places=places)
-    solved = solver.solve(readings, offline=offline, progress=progress)
+    readings = sparse_mocap.readings.readings_of(
+        worn, database.rate_hz, places=places, offline=offline
+    )
+    solver = readings.channels.reconstructor(database.motions, preset=preset)
+    solved = solver.solve(readings.values, offline=offline, progress=progress)
     motion = solved.motion
     quality = sparse_mocap.reconstruction
     return Performance(
@@ -79,5 +81,5 @@ def reconstruct(
         motion=motion,
         duration_s=(motion.num_frames - 1) * motion.frame_time_s,
         misfit_mps2=quality.mean_misfit_mps2(solved),
-        is_guess=quality.is_unlike_the_database(solved, readings),
+        is_guess=quality.is_unlike_the_database(solved, readings.specific_force),
     )

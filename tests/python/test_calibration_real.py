@@ -6,6 +6,7 @@ Their orientations, which no method here sees, are the reference for the directi
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +17,10 @@ from scipy.spatial.transform import Rotation
 from sparse_mocap import (
     Motion,
     MotionDatabase,
-    Reconstructor,
     SensorRecord,
     Take,
     build_database,
-    resampled,
+    readings_of,
 )
 from sparse_mocap.calibration import Calibration, Steps, apply, calibrate, places_of
 
@@ -40,6 +40,7 @@ LIMBS = {
     "upper_leg_right": ("rhipjoint", "rfemur"),
     "lower_leg_right": ("rfemur", "rtibia"),
 }
+TRUNK = "upper_back"
 # The wearer stands for 4 s, then lifts both forearms; from 55 s on there is steady locomotion.
 STEPS = Steps((0.0, 4.0), (("bend_elbows", (4.5, 6.0)), ("walk", (55.0, 75.0))))
 SCORED = (55.0, 100.0)
@@ -69,22 +70,24 @@ def turns(recorded: Any, name: str) -> Rotation:
 
 
 def reference(recorded: Any) -> np.ndarray:
-    """(T, 8, 3) limb directions in the heading frame; segments have y upwards along the limb."""
+    """(T, 9, 3) limbs and trunk in the heading frame; segments have y upwards along the limb."""
     right = turns(recorded, "hip").apply([0, 0, 1]) * [1, 1, 0]
     left = -right / np.linalg.norm(right, axis=1, keepdims=True)
     axes = np.stack([left, np.tile([0, 0, 1.0], (len(left), 1)), np.cross(left, [0, 0, 1])], 1)
     limbs = [turns(recorded, name).apply([0, -1, 0]) for name in LIMBS]
+    limbs.append(turns(recorded, TRUNK).apply([0, 1, 0]))
     return np.einsum("tij,ltj->tli", axes, np.array(limbs))
 
 
 def directions(motion: Motion) -> np.ndarray:
     positions, names = motion.joint_positions("heading"), motion.skeleton.names
-    limbs = [positions[:, names.index(b)] - positions[:, names.index(a)] for a, b in LIMBS.values()]
+    ends = [*LIMBS.values(), ("root", "thorax")]
+    limbs = [positions[:, names.index(b)] - positions[:, names.index(a)] for a, b in ends]
     return np.stack([v / np.linalg.norm(v, axis=1, keepdims=True) for v in limbs], 1)
 
 
-def mean_angle_deg(a: np.ndarray, b: np.ndarray) -> float:
-    return float(np.degrees(np.arccos(np.clip((a * b).sum(axis=-1), -1, 1))).mean())
+def angles_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.degrees(np.arccos(np.clip((a * b).sum(axis=-1), -1, 1)))
 
 
 def test_boxes_turned_by_half_a_right_angle_are_found(
@@ -117,22 +120,34 @@ def test_limbs_point_where_the_reference_says(
     build_database([real_data / "hdm05", real_data / "cmu" / "bvh"], path)
     database = MotionDatabase(path)
     worn = apply(calibration, take)
-    times, readings = resampled(worn, database.rate_hz)
-    part = times >= SCORED[0] - 5
-    scored = times[part] >= SCORED[0]
     limbs = reference(recorded)
-    truth = limbs[np.round(times[part][scored] * 100).astype(int)]
-    mean = truth.mean(axis=0) / np.linalg.norm(truth.mean(axis=0), axis=1, keepdims=True)
-    held_still = mean_angle_deg(np.broadcast_to(mean, truth.shape), truth)
-    errors = {}
-    for offline in (False, True):
-        method = Reconstructor(database, worn.sites, places=places_of(calibration, take))
-        solved = method.solve(readings[part], offline=offline)
-        errors[offline] = mean_angle_deg(directions(solved.motion)[scored], truth)
-    with capsys.disabled():
-        print(
-            f"\nlimb directions: online {errors[False]:.1f}, offline {errors[True]:.1f}, "
-            f"the mean pose held still {held_still:.1f} degrees"
+    errors, held_still = {}, 0.0
+    for uses_gyroscopes, offline in itertools.product((False, True), repeat=2):
+        readings = readings_of(
+            worn,
+            database.rate_hz,
+            places=places_of(calibration, take),
+            offline=offline,
+            uses_gyroscopes=uses_gyroscopes,
         )
-    assert errors[True] < 0.9 * held_still
-    assert errors[False] < held_still
+        part = readings.times_s >= SCORED[0] - 5
+        times = readings.times_s[part]
+        scored = times >= SCORED[0]
+        method = readings.channels.reconstructor(database)
+        solved = method.solve(readings.values[part], offline=offline)
+        truth = limbs[np.round(times[scored] * 100).astype(int)]
+        found = directions(solved.motion)[scored]
+        errors[uses_gyroscopes, offline] = angles_deg(found, truth).mean(axis=0)
+        mean = truth.mean(axis=0) / np.linalg.norm(truth.mean(axis=0), axis=1, keepdims=True)
+        held_still = angles_deg(mean, truth).mean(axis=0)
+    with capsys.disabled():
+        for told, of in (("limbs", LIMBS), ("limbs and trunk", [*LIMBS, TRUNK])):
+            means = [error[: len(of)].mean() for error in (*errors.values(), held_still)]
+            print("\n{}: online {:.1f}, offline {:.1f}; with gyroscopes {:.1f}, {:.1f}; the mean "
+                  "pose held still {:.1f} degrees".format(told, *means))  # fmt: skip
+    limbs_alone = slice(0, len(LIMBS))
+    means = {how: error[limbs_alone].mean() for how, error in errors.items()}
+    assert means[False, True] < 0.9 * held_still[limbs_alone].mean()
+    assert means[False, False] < held_still[limbs_alone].mean()
+    for offline in (False, True):
+        assert means[True, offline] < means[False, offline] - 0.5

@@ -48,6 +48,7 @@ from .options import (
     "--preset", "presets", multiple=True, help="May be repeated.  [default: default, paper]"
 )
 @click.option("--offline", is_flag=True, help="Runs each preset offline too.")
+@click.option("--gyroscopes", is_flag=True, help="Sensors have gyroscopes, which are used.")
 @click.option("--sites", type=Sites(), default=PAPER_SITES, help="Where sensors are worn.")
 @noise_option
 @seed_option
@@ -61,6 +62,7 @@ def evaluate(
     method: str,
     presets: tuple[str, ...],
     offline: bool,
+    gyroscopes: bool,
     sites: tuple[str, ...],
     noise: str,
     seed: int,
@@ -74,7 +76,7 @@ def evaluate(
     """
     presets = presets or tuple(dict.fromkeys(("default", _paper_preset(method))))
     check_presets(method, presets)
-    settings = Settings(scenario, method, presets, offline, tests, sites, noise, seed)
+    settings = Settings(scenario, method, presets, offline, tests, sites, noise, seed, gyroscopes)
     with progress_bar("Evaluating") as progress, _database(source, cache, progress) as database:
         found = run_evaluation(database, source, settings, progress)
     if json_path is not None:

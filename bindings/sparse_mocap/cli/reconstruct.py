@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 from .. import (
     MotionDatabase,
     Reconstruction,
-    Reconstructor,
     read_take,
-    resampled,
+    readings_of,
     write_bvh,
     write_positions,
 )
@@ -52,6 +51,10 @@ from .options import (
     "--preset", default="default", show_default=True, help="The method's settings by name."
 )
 @click.option("--offline", is_flag=True, help="Looks at the whole take for every frame.")
+@click.option(
+    "--gyroscopes/--no-gyroscopes", default=True, show_default=True,
+    help="Also uses which way is up for each sensor, where gx,gy,gz tell.",
+)  # fmt: skip
 @click.option("--positions", type=FilePath, help="Also writes the joints' positions (.csv).")
 @frame_option
 @click.option("--json", "json_path", type=FilePath, help="Also writes a report on every frame.")
@@ -69,6 +72,7 @@ def reconstruct(
     method: str,
     preset: str,
     offline: bool,
+    gyroscopes: bool,
     positions: Path | None,
     frame: str,
     json_path: Path | None,
@@ -84,27 +88,34 @@ def reconstruct(
     check_presets(method, [preset])
     recorded, known_places = _made_ideal(read_take(take), calibration_path, clap)
     database = MotionDatabase(database_path)
-    times, readings = resampled(recorded, database.rate_hz)
     where = places_of(recorded.sites, (*known_places, *places))
-    reconstructor = Reconstructor(
-        database, recorded.sites, method=method, preset=preset, places=where
+    readings = readings_of(
+        recorded, database.rate_hz, places=where, offline=offline, uses_gyroscopes=gyroscopes
     )
+    reconstructor = readings.channels.reconstructor(database, method=method, preset=preset)
     with progress_bar("Reconstructing") as progress:
-        solved = reconstructor.solve(readings, offline=offline, progress=progress)
+        solved = reconstructor.solve(readings.values, offline=offline, progress=progress)
+    times, forces = readings.times_s, readings.specific_force
     late = None if offline else latency_ms(reconstructor, database)
     write_bvh(output, solved.motion)
     if positions is not None:
         names = solved.motion.skeleton.names
         write_positions(positions, times, names, solved.motion.joint_positions(frame))
     if json_path is not None:
-        options = {"method": method, "preset": preset, "offline": offline, "places": where}
+        options = {
+            "method": method,
+            "preset": preset,
+            "offline": offline,
+            "places": where,
+            "gyroscopes": readings.channels.has_up,
+        }
         about = {"take": str(take), "database": str(database_path), "options": options,
                  "rate_hz": database.rate_hz, "latency_frames": reconstructor.latency_frames,
                  "latency_ms": late}  # fmt: skip
-        told = report(database, recorded.sites, times, readings, solved)
+        told = report(database, recorded.sites, times, forces, solved)
         write_json(json_path, about | told)
     warn(suspicions(recorded))
-    _tell(output, solved, readings, late)
+    _tell(output, solved, forces, late)
 
 
 def _made_ideal(

@@ -16,10 +16,11 @@ from .. import (
     FormatError,
     MappingError,
     MotionDatabase,
-    Reconstructor,
+    Reconstruction,
     nearest_poses,
     nearest_windows,
     playback_best_path,
+    readings_of,
 )
 from ..reconstruction import latency_ms
 from ..table_errors import TableError
@@ -54,6 +55,8 @@ class Settings:
     sites: tuple[str, ...] = PAPER_SITES
     noise: str = "none"
     seed: int = 0
+    with_gyroscopes: bool = False
+    """Whether the sensors are inertial ones, not accelerometers alone."""
 
 
 def evaluate(
@@ -143,27 +146,33 @@ class _Run:
     ) -> list[tuple[str, Floats, Floats]]:
         """Returns name, times and positions (heading frame) of every method and baseline."""
         found = []
-        for name, reconstructor, is_offline in self._reconstructors(excluded):
-            solved = reconstructor.solve(performance.readings, offline=is_offline)
-            found.append((name, performance.times_s, reconstructed_positions(solved)))
-        return found + self._baselines(performance, truth, excluded)
-
-    def _reconstructors(self, excluded: Sequence[int]) -> list[tuple[str, Reconstructor, bool]]:
-        made = []
         for preset in self.settings.presets:
             for is_offline in (False, True) if self.settings.with_offline else (False,):
                 name = f"{preset}, offline" if is_offline else preset
-                reconstructor = Reconstructor(
-                    self.database,
-                    self.settings.sites,
-                    method=self.settings.method,
-                    preset=preset,
-                    excluded_clips=excluded,
-                )
-                late = None if is_offline else latency_ms(reconstructor, self.database)
-                self.evaluation.latencies_ms[name] = late
-                made.append((name, reconstructor, is_offline))
-        return made
+                solved = self._solved(name, preset, is_offline, performance, excluded)
+                found.append((name, performance.times_s, reconstructed_positions(solved)))
+        return found + self._baselines(performance, truth, excluded)
+
+    def _solved(
+        self,
+        name: str,
+        preset: str,
+        is_offline: bool,
+        performance: Performance,
+        excluded: Sequence[int],
+    ) -> Reconstruction:
+        readings = readings_of(
+            performance.take,
+            self.database.rate_hz,
+            offline=is_offline,
+            uses_gyroscopes=self.settings.with_gyroscopes,
+        )
+        reconstructor = readings.channels.reconstructor(
+            self.database, method=self.settings.method, preset=preset, excluded_clips=excluded
+        )
+        late = None if is_offline else latency_ms(reconstructor, self.database)
+        self.evaluation.latencies_ms[name] = late
+        return reconstructor.solve(readings.values, offline=is_offline)
 
     def _baselines(
         self, performance: Performance, truth: Floats, excluded: Sequence[int]

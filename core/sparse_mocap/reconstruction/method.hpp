@@ -11,14 +11,19 @@
 
 namespace sparse_mocap {
 
-// What all sensors read at one instant: 3 x sensors, m/s^2, sensor axes; NaN where one is silent.
+// What all sensors read at one instant: 3 x sensors, sensor axes; NaN where one is silent.
 using Reading = Eigen::Matrix3Xd;
+
+// What a sensor reads: its specific force (m/s^2), or the direction against gravity (unit vector;
+// see InclinationFilter). A device that tells both is two sensors.
+enum class Quantity { specific_force, up };
 
 // Where a sensor is worn: an index in all_sites, and how far along the carrying bone (0 at its
 // pivot, 1 at its end).
 struct WornSensor {
   int site = 0;
   double place = 1.0;
+  Quantity quantity = Quantity::specific_force;
 };
 
 // One reconstructed frame.
@@ -29,7 +34,8 @@ struct PoseEstimate {
   double yaw_rad = 0.0;                                // heading in the world
   Eigen::Vector2d contacts = Eigen::Vector2d::Zero();  // probability that left, right foot stand
   Eigen::VectorXd spread_m;            // 21: weighted deviation of the retrieved positions
-  Eigen::VectorXd sensor_misfit_mps2;  // per sensor: measured against retrieved; NaN when silent
+  Eigen::VectorXd sensor_misfit_mps2;  // per sensor of specific force: measured against retrieved;
+                                       // NaN when silent
   int clip = -1;                       // the clip leaned on most, and the frame in the database
   int database_frame = -1;
 };

@@ -42,6 +42,8 @@ std::vector<Tap> half_change(const std::vector<Tap>& part, int later, int earlie
 Config best_measured_alike() {
   Config config;
   config.leg_weight = 1.6;
+  config.up_weight_mps2 = kGravity_mps2;
+  config.w_inclination = 30.0;
   config.use_tempo_copies = true;
   config.neighbour_fraction = 0.5;
   config.olng.penalty = 0.8;
@@ -102,6 +104,7 @@ void Config::validate() const {
   require(neighbour_fraction, 1e-6, 1.0, "neighbour_fraction");
   require(num_paths, 1, num_neighbours, "num_paths (I)");
   require(leg_weight, 1e-3, 1e3, "leg_weight");
+  require(up_weight_mps2, 0.0, 1e3, "up_weight_mps2");
   require(path_fraction, 1e-9, 1.0, "path_fraction");
   require(olng.penalty, 0.0, 100.0, "olng.penalty");
   require(olng.forgetting, 0.0, 1.0, "olng.forgetting");
@@ -113,7 +116,7 @@ void Config::validate() const {
   require(pca_variance, 0.01, 1.0, "pca_variance");
   require(max_iterations, 1, 10000, "max_iterations");
   require(foot_lock, 0.0, 1.0, "foot_lock");
-  for (const double weight : {w_prior, w_pose, w_motion, w_smooth, w_contr})
+  for (const double weight : {w_prior, w_pose, w_motion, w_smooth, w_contr, w_inclination})
     require(weight, 0.0, 1e6, "an energy weight");
   if (w_prior * w_pose <= 0.0) throw ConfigError("w_prior and w_pose must be positive");
   if (offline) offline->validate();

@@ -34,6 +34,7 @@ struct Config {
   double neighbour_fraction = 0.25;
   FeatureLayout features;
   double leg_weight = 1.0;        // of the sensors on legs in the search
+  double up_weight_mps2 = 0.0;    // what a unit of direction against gravity counts there
   bool use_tempo_copies = false;  // search clips at other tempos than performed as well
   OlngConfig olng;
 
@@ -54,7 +55,8 @@ struct Config {
   double w_motion = 0.2;
   double w_smooth = 0.2;
   double w_contr = 1.0;
-  double kernel_power = 0.5;  // the paper's square root; 2 gives weighted means
+  double w_inclination = 0.0;  // of limbs whose direction against gravity is measured
+  double kernel_power = 0.5;   // the paper's square root; 2 gives weighted means
   PoseSpace pose_space = PoseSpace::angles;
   MotionRule motion_rule = MotionRule::taylor;
 

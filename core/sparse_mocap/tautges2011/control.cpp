@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/tautges2011/control.hpp"
 
+#include <limits>
+
 #include "sparse_mocap/sensors/sites.hpp"
 
 namespace sparse_mocap::tautges2011 {
@@ -8,7 +10,9 @@ namespace sparse_mocap::tautges2011 {
 Eigen::Matrix3Xd heading_accelerations(const Reading& reading, const JointTransforms& pose,
                                        const std::vector<WornSensor>& sensors) {
   Eigen::Matrix3Xd out(3, reading.cols());
+  out.setConstant(std::numeric_limits<double>::quiet_NaN());
   for (std::size_t s = 0; s < sensors.size(); ++s) {
+    if (sensors[s].quantity != Quantity::specific_force) continue;
     const Site& site = all_sites()[static_cast<std::size_t>(sensors[s].site)];
     const Mat3 R_heading_sensor =
         pose.R_world_joint[static_cast<std::size_t>(site.orientation)] * site.R_joint_sensor;

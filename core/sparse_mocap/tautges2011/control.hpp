@@ -13,7 +13,8 @@
 namespace sparse_mocap::tautges2011 {
 
 // What the sensors accelerate by in the heading frame (m/s^2, gravity removed; 3 x sensors, NaN
-// where silent), their local frames taken from the pose: alpha-hat of equation (10).
+// where silent, and for other quantities), their local frames taken from the pose: alpha-hat of
+// equation (10).
 Eigen::Matrix3Xd heading_accelerations(const Reading& reading, const JointTransforms& pose,
                                        const std::vector<WornSensor>& sensors);
 

@@ -38,9 +38,19 @@ Collapsed collapse(const KernelTerm& term, const Eigen::VectorXd& weights,
   return out;
 }
 
-Eigen::VectorXd observed(const TermSpace& space, const Eigen::VectorXd& angles,
-                         const JointTransforms& transforms) {
-  if (space.is_angles) return angles;
+Eigen::VectorXd observed(const Skeleton& skeleton, const TermSpace& space,
+                         const Eigen::VectorXd& angles, const JointTransforms& transforms) {
+  if (space.compared == Compared::angles) return angles;
+  if (space.compared == Compared::rises) {
+    Eigen::VectorXd rises(static_cast<Eigen::Index>(space.joints.size()));
+    for (Eigen::Index k = 0; k < rises.size(); ++k) {
+      const int joint = space.joints[static_cast<std::size_t>(k)];
+      const int parent = skeleton.joint(joint).parent;
+      rises[k] = kUp.dot(transforms.end[static_cast<std::size_t>(joint)] -
+                         transforms.end[static_cast<std::size_t>(parent)]);
+    }
+    return rises;
+  }
   const auto count = space.joints.empty() ? transforms.end.size() : space.joints.size();
   Eigen::VectorXd y(3 * static_cast<Eigen::Index>(count));
   for (std::size_t k = 0; k < count; ++k)
@@ -49,9 +59,20 @@ Eigen::VectorXd observed(const TermSpace& space, const Eigen::VectorXd& angles,
   return y;
 }
 
-Eigen::MatrixXd observed_jacobian(const TermSpace& space, const Eigen::MatrixXd& positions_by_basis,
+Eigen::MatrixXd observed_jacobian(const Skeleton& skeleton, const TermSpace& space,
+                                  const Eigen::MatrixXd& positions_by_basis,
                                   const Eigen::MatrixXd& basis) {
-  if (space.is_angles) return basis;
+  if (space.compared == Compared::angles) return basis;
+  if (space.compared == Compared::rises) {
+    Eigen::MatrixXd rows(static_cast<Eigen::Index>(space.joints.size()), basis.cols());
+    for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+      const int joint = space.joints[static_cast<std::size_t>(k)];
+      const int parent = skeleton.joint(joint).parent;
+      rows.row(k) = kUp.transpose() * (positions_by_basis.middleRows(3 * joint, 3) -
+                                       positions_by_basis.middleRows(3 * parent, 3));
+    }
+    return rows;
+  }
   Eigen::MatrixXd rows(3 * static_cast<Eigen::Index>(space.joints.size()), basis.cols());
   for (std::size_t k = 0; k < space.joints.size(); ++k)
     rows.middleRows(3 * static_cast<Eigen::Index>(k), 3) =
@@ -85,9 +106,9 @@ double Energy::value(const Eigen::VectorXd& angles) const {
   forward_kinematics(skeleton_, Vec3::Zero(), angles, transforms);
   double total = 0.0;
   for (const auto& [term, weights, constant] : sums_)
-    total +=
-        constant +
-        kernel_sum(term, weights, softened_squares(term, observed(term.space, angles, transforms)));
+    total += constant + kernel_sum(term, weights,
+                                   softened_squares(
+                                       term, observed(skeleton_, term.space, angles, transforms)));
   return total;
 }
 
@@ -107,14 +128,16 @@ Energy::Model Energy::majorised(const Eigen::VectorXd& angles, const Eigen::Matr
   auto hessian = model.hessian.selfadjointView<Eigen::Lower>();
   double stiffness_of_all_positions = 0.0;
   for (const auto& [term, weights, constant] : sums_) {
-    const Collapsed sum = collapse(term, weights, observed(term.space, angles, transforms));
+    const Collapsed sum =
+        collapse(term, weights, observed(skeleton_, term.space, angles, transforms));
     model.value += constant + sum.value;
-    if (!term.space.is_angles && term.space.joints.empty()) {
+    if (term.space.compared == Compared::positions && term.space.joints.empty()) {
       model.gradient.noalias() += positions_by_basis.transpose() * sum.pull;
       stiffness_of_all_positions += sum.stiffness;
       continue;
     }
-    const Eigen::MatrixXd jacobian = observed_jacobian(term.space, positions_by_basis, basis);
+    const Eigen::MatrixXd jacobian =
+        observed_jacobian(skeleton_, term.space, positions_by_basis, basis);
     model.gradient.noalias() += jacobian.transpose() * sum.pull;
     hessian.rankUpdate(jacobian.transpose(), sum.stiffness);
   }

@@ -8,10 +8,13 @@
 
 namespace sparse_mocap::tautges2011 {
 
-// What of a pose a term compares: its angles, or positions (3 rows a joint) of some joints' ends.
+// What of a pose a term compares: its angles, the positions of joints' ends (3 rows a joint), or
+// how high these are above their parents' ends (a row a joint, m).
+enum class Compared { positions, angles, rises };
+
 struct TermSpace {
-  bool is_angles = false;
-  std::vector<int> joints;  // positions only; empty: all
+  Compared compared = Compared::positions;
+  std::vector<int> joints;  // of positions and rises; empty: all, of positions only
 };
 
 // One kernel sum of the energy: weight * sum_i w_i |y_i - y|^power (equations (5), (7), (8), (11)

@@ -43,10 +43,14 @@ FeatureRows database_readings(const MotionDatabase& database,
     if (at == names.end())
       throw std::invalid_argument("the database has no readings of " + std::string(wanted));
     const auto column = static_cast<Eigen::Index>(3 * (at - names.begin()));
+    auto read = readings.middleCols(static_cast<Eigen::Index>(3 * s), 3);
+    if (sensors[s].quantity == Quantity::up) {
+      read = database.up().middleCols(column, 3);
+      continue;
+    }
     const auto place = static_cast<float>(sensors[s].place);
-    readings.middleCols(static_cast<Eigen::Index>(3 * s), 3) =
-        (1.0F - place) * database.specific_force_pivot().middleCols(column, 3) +
-        place * database.specific_force_end().middleCols(column, 3);
+    read = (1.0F - place) * database.specific_force_pivot().middleCols(column, 3) +
+           place * database.specific_force_end().middleCols(column, 3);
   }
   return readings;
 }

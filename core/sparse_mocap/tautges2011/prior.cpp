@@ -5,7 +5,7 @@ namespace sparse_mocap::tautges2011 {
 
 KernelTerm pose_prior(const Neighbourhood& neighbours, const Config& config) {
   const bool is_angles = config.pose_space == PoseSpace::angles;
-  return {{is_angles, {}},
+  return {{is_angles ? Compared::angles : Compared::positions, {}},
           config.w_prior * config.w_pose,
           config.kernel_power,
           is_angles ? neighbours.angles : neighbours.positions};

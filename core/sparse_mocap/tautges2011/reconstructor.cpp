@@ -8,6 +8,7 @@
 
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/tautges2011/control.hpp"
+#include "sparse_mocap/tautges2011/inclination_term.hpp"
 #include "sparse_mocap/tautges2011/minimizer.hpp"
 #include "sparse_mocap/tautges2011/offline.hpp"
 #include "sparse_mocap/tautges2011/prior.hpp"
@@ -33,14 +34,15 @@ std::vector<bool> searched_frames(const MotionDatabase& database, bool use_tempo
   return is_searched;
 }
 
-std::vector<float> column_weights(const std::vector<WornSensor>& sensors, double leg_weight) {
+std::vector<float> column_weights(const std::vector<WornSensor>& sensors, const Config& config) {
   using namespace standard_joint;
   std::vector<float> weights;
   for (const auto& sensor : sensors) {
     const int carrier = all_sites()[static_cast<std::size_t>(sensor.site)].carrier;
     const bool is_leg =
         carrier == ltibia || carrier == rtibia || carrier == lfemur || carrier == rfemur;
-    weights.insert(weights.end(), 3, static_cast<float>(is_leg ? leg_weight : 1.0));
+    const double unit = sensor.quantity == Quantity::up ? config.up_weight_mps2 : 1.0;
+    weights.insert(weights.end(), 3, static_cast<float>(unit * (is_leg ? config.leg_weight : 1.0)));
   }
   return weights;
 }
@@ -57,7 +59,7 @@ const Config& validated(const Config& config, const std::vector<WornSensor>& sen
   if (sensors.empty()) throw ConfigError("at least one sensor is needed");
   for (std::size_t a = 0; a < sensors.size(); ++a)
     for (std::size_t b = a + 1; b < sensors.size(); ++b)
-      if (sensors[a].site == sensors[b].site)
+      if (sensors[a].site == sensors[b].site && sensors[a].quantity == sensors[b].quantity)
         throw ConfigError("two sensors at " +
                           std::string(all_sites()[static_cast<std::size_t>(sensors[a].site)].name));
   return config;
@@ -72,7 +74,7 @@ Reconstructor::Reconstructor(std::shared_ptr<const MotionDatabase> database,
       sensors_(std::move(sensors)),
       config_(validated(config, sensors_)),
       excluded_clips_(excluded_clips),
-      column_weights_(column_weights(sensors_, config_.leg_weight)),
+      column_weights_(column_weights(sensors_, config_)),
       readings_(database_readings(*database_, sensors_)),
       index_(database_features(*database_, readings_, config_.features, column_weights_),
              searched_frames(*database_, config_.use_tempo_copies, excluded_clips)),
@@ -139,11 +141,12 @@ PoseEstimate Reconstructor::synthesize(std::vector<Path> paths, Eigen::VectorXd 
   Neighbourhood neighbours = gather(*database_, config_, std::move(paths), std::move(weights),
                                     past_ ? &past_->angles : nullptr);
   if (config_.regression_ridge > 0.0) correct_poses(neighbours, window);
-  const Eigen::VectorXd angles = minimize_energy(neighbours);
+  const Eigen::VectorXd angles = minimize_energy(neighbours, reading_at(window));
   return remember(neighbours, angles, window);
 }
 
-Eigen::VectorXd Reconstructor::minimize_energy(const Neighbourhood& neighbours) const {
+Eigen::VectorXd Reconstructor::minimize_energy(const Neighbourhood& neighbours,
+                                               const Reading& reading) const {
   const double dt = database_->frame_time_s();
   std::vector<KernelTerm> terms{pose_prior(neighbours, config_)};  // equation (5)
   if (past_) {
@@ -156,6 +159,8 @@ Eigen::VectorXd Reconstructor::minimize_energy(const Neighbourhood& neighbours) 
       terms.push_back(
           control_term(neighbours, config_, x, accelerations, sensors_, dt));  // equation (11)
   }
+  terms.push_back(inclination_term(database_->skeleton(), reading, sensors_, config_.w_inclination,
+                                   neighbours.weights.size()));
   const Energy energy(database_->skeleton(), neighbours.weights, std::move(terms));
   const PoseSubspace subspace =
       weighted_pca(neighbours.angles, neighbours.weights, config_.pca_variance);
@@ -234,9 +239,14 @@ void Reconstructor::describe_retrieval(const Neighbourhood& neighbours, const Wi
   for (std::size_t i = 0; i < neighbours.paths.size(); ++i)
     retrieved += neighbours.weights[static_cast<Eigen::Index>(i)] *
                  readings_.row(neighbours.paths[i].frame).transpose().cast<double>();
-  const auto sensors = static_cast<Eigen::Index>(sensors_.size());
-  estimate.sensor_misfit_mps2 =
-      (reading_at(window) - retrieved.reshaped(3, sensors)).colwise().norm().transpose();
+  const Eigen::Matrix3Xd misfit =
+      reading_at(window) - retrieved.reshaped(3, static_cast<Eigen::Index>(sensors_.size()));
+  std::vector<double> norms_mps2;
+  for (std::size_t s = 0; s < sensors_.size(); ++s)
+    if (sensors_[s].quantity == Quantity::specific_force)
+      norms_mps2.push_back(misfit.col(static_cast<Eigen::Index>(s)).norm());
+  estimate.sensor_misfit_mps2 = Eigen::Map<const Eigen::VectorXd>(
+      norms_mps2.data(), static_cast<Eigen::Index>(norms_mps2.size()));
 }
 
 std::vector<PoseEstimate> Reconstructor::solve(const std::vector<Reading>& take,

@@ -44,7 +44,7 @@ class Reconstructor : public Method {
                                             const Progress& progress);
   PoseEstimate synthesize(std::vector<Path> paths, Eigen::VectorXd weights, const Window& window);
   void correct_poses(Neighbourhood& neighbours, const Window& window) const;
-  Eigen::VectorXd minimize_energy(const Neighbourhood& neighbours) const;
+  Eigen::VectorXd minimize_energy(const Neighbourhood& neighbours, const Reading& reading) const;
   PoseEstimate remember(const Neighbourhood& neighbours, const Eigen::VectorXd& angles,
                         const Window& window);
   void describe_retrieval(const Neighbourhood& neighbours, const Window& window,

@@ -24,11 +24,12 @@ Eigen::VectorXd random_weights(Random& random, Eigen::Index count) {
 
 // A term of each space, with one power.
 std::vector<KernelTerm> mixed_terms(Random& random, double power, Eigen::Index paths) {
-  return {{{true, {}}, 3.0, power, random.matrix(43, paths, 1.0)},
+  return {{{Compared::angles, {}}, 3.0, power, random.matrix(43, paths, 1.0)},
           {{}, 1.0, power, random.matrix(63, paths, 0.8)},
           {{}, 0.5, power, random.matrix(63, paths, 0.8)},
-          {{false, {rwrist, lfemur}}, 2.0, power, random.matrix(6, paths, 0.8)},
-          {{true, {}}, 0.0, power, random.matrix(43, paths, 1.0)}};
+          {{Compared::positions, {rwrist, lfemur}}, 2.0, power, random.matrix(6, paths, 0.8)},
+          {{Compared::rises, {rwrist, lfemur}}, 2.0, power, random.matrix(2, paths, 0.4)},
+          {{Compared::angles, {}}, 0.0, power, random.matrix(43, paths, 1.0)}};
 }
 
 TEST(Energy, IsTheSumOfItsSoftenedKernels) {
@@ -43,9 +44,12 @@ TEST(Energy, IsTheSumOfItsSoftenedKernels) {
     for (Eigen::Index j = 0; j < 21; ++j)
       x.segment<3>(3 * j) = pose.end[static_cast<std::size_t>(j)];
     x_two << pose.end[rwrist], pose.end[lfemur];
+    const Eigen::VectorXd rises =
+        Eigen::Vector2d((pose.end[rwrist] - pose.end[rradius]).dot(kUp),
+                        (pose.end[lfemur] - pose.end[lhipjoint]).dot(kUp));
     double expected = 0.0;
     for (std::size_t k = 0; k < terms.size(); ++k) {
-      const Eigen::VectorXd& y = k == 0 || k == 4 ? q : (k == 3 ? x_two : x);
+      const Eigen::VectorXd& y = k == 0 || k == 5 ? q : k == 3 ? x_two : k == 4 ? rises : x;
       for (Eigen::Index i = 0; i < 7; ++i)
         expected += terms[k].weight * weights[i] *
                     std::pow((terms[k].targets.col(i) - y).squaredNorm() + 1e-6, 0.5 * power);
@@ -75,7 +79,8 @@ TEST(Energy, GradientEqualsCentralDifferences) {
 TEST(Energy, IsSmoothWhereAPoseMeetsATarget) {
   Random random(3);
   const Eigen::MatrixXd target = random.matrix(43, 1, 1.0);
-  const Energy energy(kSkeleton, Eigen::VectorXd::Ones(1), {{{true, {}}, 1.0, 0.5, target}});
+  const Energy energy(kSkeleton, Eigen::VectorXd::Ones(1),
+                      {{{Compared::angles, {}}, 1.0, 0.5, target}});
   Eigen::VectorXd gradient;
   EXPECT_NEAR(energy.value_and_gradient(target, gradient), std::sqrt(Energy::kSoftening), 1e-12);
   EXPECT_LT(gradient.norm(), 1e-12);

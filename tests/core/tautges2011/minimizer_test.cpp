@@ -148,7 +148,7 @@ TEST(Minimize, FindsTheWeightedMeanOfSquares) {
   const Eigen::MatrixXd targets = random.matrix(43, 20, 1.0);
   const Eigen::VectorXd weights = Eigen::VectorXd::Constant(20, 0.05);
   const Skeleton skeleton = template_skeleton();
-  const Energy energy(skeleton, weights, {{{true, {}}, 1.0, 2.0, targets}});
+  const Energy energy(skeleton, weights, {{{Compared::angles, {}}, 1.0, 2.0, targets}});
   const PoseSubspace subspace = weighted_pca(targets, weights, 0.9);
   const Minimum minimum = minimize(energy, subspace, {targets.col(3)}, 20);
   EXPECT_LT((minimum.angles - targets.rowwise().mean()).norm(), 1e-6);
