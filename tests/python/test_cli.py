@@ -191,7 +191,7 @@ def test_reconstruct_starts_when_the_take_does(
 ) -> None:
     take = read_take(take_path)
     late = {
-        site: SensorRecord(record.times_s + 12.345, record.specific_force)
+        site: SensorRecord(record.times_s + 12.345, record.specific_force, record.angular_velocity)
         for site, record in take.sensors.items()
     }
     write_take(tmp_path / "late.csv", Take(late))

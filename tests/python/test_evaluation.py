@@ -214,20 +214,28 @@ def independent_error(truth: Path, result: Path) -> float:
     return float(100 * np.sqrt(square.mean(1)).mean())
 
 
-@pytest.mark.parametrize("preset", ["default", "paper"])
+@pytest.mark.parametrize(
+    ("preset", "gyroscopes"), [("default", False), ("default", True), ("paper", False)]
+)
 def test_hidden_is_as_good_as_absent(
-    library: Path, database: MotionDatabase, tmp_path: Path, cli: Cli, preset: str
+    library: Path,
+    database: MotionDatabase,
+    tmp_path: Path,
+    cli: Cli,
+    preset: str,
+    gyroscopes: bool,
 ) -> None:
     """The evaluation's figure is that of the commands on a database built without the clip."""
     name = "bruno_walk_01.bvh"
-    settings = Settings(1, presets=(preset,), tests=name)
+    settings = Settings(1, presets=(preset,), tests=name, with_gyroscopes=gyroscopes)
     (test,) = evaluate(database, library, settings).tests
     path = {what: tmp_path / what for what in ("db.smdb", "take.csv", "o.bvh", "o.csv", "t.csv")}
     for words in (
         ("database", "build", library, "-o", path["db.smdb"], "--mirror", "--exclude", name),
         ("simulate", library / name, "-o", path["take.csv"]),
         ("reconstruct", "--database", path["db.smdb"], path["take.csv"], "-o", path["o.bvh"],
-         "--preset", preset, "--positions", path["o.csv"]),
+         "--preset", preset, "--gyroscopes" if gyroscopes else "--no-gyroscopes",
+         "--positions", path["o.csv"]),
         ("convert", library / name, "-o", path["t.csv"], "--skeleton", path["db.smdb"],
          "--fps", 25),
     ):  # fmt: skip

@@ -102,13 +102,8 @@ def reconstruct(
         names = solved.motion.skeleton.names
         write_positions(positions, times, names, solved.motion.joint_positions(frame))
     if json_path is not None:
-        options = {
-            "method": method,
-            "preset": preset,
-            "offline": offline,
-            "places": where,
-            "gyroscopes": readings.channels.has_up,
-        }
+        options = {"method": method, "preset": preset, "offline": offline, "places": where,
+                   "gyroscopes": any(readings.channels.has_up)}  # fmt: skip
         about = {"take": str(take), "database": str(database_path), "options": options,
                  "rate_hz": database.rate_hz, "latency_frames": reconstructor.latency_frames,
                  "latency_ms": late}  # fmt: skip
