@@ -116,12 +116,22 @@ class Worn:
     sites: list[str]
     places: list[float] | None
     """Along the sites' bones; None: the sites' own."""
-    axes: Floats
-    """(S, 3, 3), R_site_sensor times the scale."""
+    R_site_sensor: Floats
+    """(S, 3, 3), applied after the scale."""
+    scales: Floats
+    """(S,)"""
+    gyroscope_biases: Floats
+    """(S, 3) rad/s, in the sensors' own axes."""
 
-    def ideal(self, specific_force: Floats) -> Floats:
-        """What ideal sensors would have read at the same instant, (S, 3) m/s^2."""
-        return np.einsum("sij,sj->si", self.axes, specific_force)
+    def ideal(self, values: Floats, has_up: Sequence[bool] = ()) -> Floats:
+        """What ideal sensors would have read at the same instant, (C, 3).
+
+        Specific forces of all sensors come first, then directions of those that have_up.
+        """
+        count = len(self.sites)
+        turns = [*self.R_site_sensor, *self.R_site_sensor[np.flatnonzero(has_up)]]
+        scales = np.concatenate([self.scales, np.ones(len(turns) - count)])
+        return np.einsum("c,cij,cj->ci", scales, np.array(turns), values)
 
 
 def calibrate(
@@ -185,10 +195,17 @@ def worn_as(calibration: Calibration | None, names: Sequence[str]) -> Worn:
     Raises CalibrationError when a sensor has no calibration.
     """
     if calibration is None:
-        return Worn(list(names), None, np.tile(np.eye(3), (len(names), 1, 1)))
+        count = len(names)
+        turns = np.tile(np.eye(3), (count, 1, 1))
+        return Worn(list(names), None, turns, np.ones(count), np.zeros((count, 3)))
     known = [_of(calibration, name) for name in names]
-    axes = np.array([sensor.scale * sensor.R_site_sensor for sensor in known])
-    return Worn([sensor.site for sensor in known], [sensor.place for sensor in known], axes)
+    return Worn(
+        [sensor.site for sensor in known],
+        [sensor.place for sensor in known],
+        np.array([sensor.R_site_sensor for sensor in known]),
+        np.array([sensor.scale for sensor in known]),
+        np.array([sensor.gyroscope_bias for sensor in known]),
+    )
 
 
 def assign_by_shaking(take: Take, span: Span) -> str:

@@ -59,6 +59,7 @@ class LiveSession:
         self._made_for: tuple[Database, str, Any] | None = None
         self._poses: LivePoses | None = None
         self._worn: dict[int, str] = {}
+        self._with_gyroscope: frozenset[int] = frozenset()
         self._thread = threading.Thread(target=self._run, name="Sparse Mocap: live", daemon=True)
 
     @property
@@ -162,7 +163,11 @@ class LiveSession:
             if link["state"] == "failed":
                 raise InputError(link["message"] or f"{link['port']}: failed")
         worn = {i: sensor["site"] for i, sensor in enumerate(status["sensors"])}
-        is_settled, self._worn = worn == self._worn, worn
+        turned = frozenset(
+            i for i, sensor in enumerate(status["sensors"]) if sensor["has_gyroscope"]
+        )
+        is_settled = (worn, turned) == (self._worn, self._with_gyroscope)
+        self._worn, self._with_gyroscope = worn, turned
         wanted = self._wanted
         if not is_settled or wanted is not self._made_for:
             self._poses = None
@@ -180,7 +185,9 @@ class LiveSession:
 
     def _begin_poses(self, database: Database, preset: str, calibration: Any) -> None:
         try:
-            self._poses = LivePoses(database.motions, self._worn, preset, calibration)
+            self._poses = LivePoses(
+                database.motions, self._worn, preset, calibration, self._with_gyroscope
+            )
             self._tell(warning="", num_dropped=0)
         except Exception as error:  # sensors may get places, or others may come
             self._tell(warning=one_line_of(error))

@@ -48,22 +48,29 @@ class LivePoses:
     """Reconstructs what sensors read, as it comes; use it from one thread."""
 
     def __init__(
-        self, motions: Any, sensors: dict[int, str], preset: str, calibration: Any = None
+        self,
+        motions: Any,
+        sensors: dict[int, str],
+        preset: str,
+        calibration: Any = None,
+        with_gyroscope: frozenset[int] = frozenset(),
     ) -> None:
         """sensors: where each sensor of the capture is worn, by its number there.
 
         calibration: sparse_mocap.calibration.Calibration; None: worn as the paper does.
         """
+        self._has_up = [number in with_gyroscope for number in sensors]
         self._worn = core().calibration.worn_as(calibration, list(sensors.values()))
         known = core().site_names()
         for site in self._worn.sites:
             if site not in known:
                 raise InputError(f'The sensor "{site}" has no place on the body: name its place')
-        self._solver = core().Reconstructor(
-            motions, self._worn.sites, preset=preset, places=self._worn.places
-        )
+        channels = core().readings.Channels(self._worn.sites, self._worn.places, self._has_up)
+        self._solver = channels.reconstructor(motions, preset=preset)
         live_readings = capture().live_readings
-        self._readings = live_readings.LiveReadings(list(sensors), motions.rate_hz)
+        self._readings = live_readings.LiveReadings(
+            list(sensors), motions.rate_hz, self._has_up, self._worn.gyroscope_biases
+        )
         self._times_s: deque[float] = deque(maxlen=self._solver.latency_frames + 1)
         self._misfits: deque[float] = deque(maxlen=_WINDOW)
         self.latencies_s: deque[float] = deque(maxlen=_WINDOW)
@@ -81,7 +88,7 @@ class LivePoses:
         pose = None
         for reading in readings:
             self._times_s.append(reading.time_s)
-            estimate = self._solver.step(self._worn.ideal(reading.specific_force))
+            estimate = self._solver.step(self._worn.ideal(reading.values, self._has_up))
             if estimate is not None:
                 pose = self._pose(estimate)
         return pose

@@ -53,8 +53,8 @@ def test_a_calibration_is_made_kept_and_used(tmp_path):
             assert np.degrees(np.arccos(min((np.trace(off) - 1) / 2, 1.0))) < 5.0, site
         until(lambda: session._poses is not None and session._poses._worn.places is not None)
         used = session._poses._worn
-        assert np.allclose(used.axes[0], found.sensors[SITES[0]].scale
-                           * found.sensors[SITES[0]].R_site_sensor)  # fmt: skip
+        assert np.allclose(used.R_site_sensor[0], found.sensors[SITES[0]].R_site_sensor)
+        assert used.scales[0] == found.sensors[SITES[0]].scale
         assert addon("scene.prompt")._handler is None
 
 

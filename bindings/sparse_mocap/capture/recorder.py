@@ -48,6 +48,7 @@ class Recorder:
         self._told_sensors = 0
         self._last: dict[int, Any] = {}
         self._num_of: dict[int, int] = {}
+        self._with_gyroscope: set[int] = set()
         self._rates: deque[tuple[float, dict[int, int]]] = deque(maxlen=_RATE_WINDOW)
         self.recording: Recording | None = None
         self.num_recordings = 0
@@ -181,6 +182,9 @@ class Recorder:
             own = samples[samples["sensor"] == sensor]
             self._num_of[sensor] = self._num_of.get(sensor, 0) + len(own)
             self._last[sensor] = own[-1]
+            rate = own["angular_velocity"]
+            if (np.isfinite(rate) & (rate != 0.0)).any():
+                self._with_gyroscope.add(sensor)
 
     def _tell_new_sensors(self) -> None:
         sensors = self._decoder.sensors
@@ -209,7 +213,7 @@ class Recorder:
             "name": sensor.name, "site": self._decoder.sites[index], "link": sensor.link,
             "samples": self._num_of.get(index, 0), "missing": sensor.num_missing,
             "rate_hz": self._rate(index), "age_s": None, "specific_force": None,
-            "state": "silent", "flags": 0,
+            "state": "silent", "flags": 0, "has_gyroscope": index in self._with_gyroscope,
         }  # fmt: skip
         if last is not None:
             age_s = (now_ns - int(last["arrival_ns"])) * 1e-9

@@ -9,12 +9,13 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from .. import MotionDatabase, PoseEstimate, Reconstructor, site_names
+from .. import MotionDatabase, PoseEstimate, site_names
 from ..calibration import Calibration, worn_as
 from ..capture.client import CaptureClient
 from ..capture.errors import CaptureError
 from ..capture.live_readings import LiveReadings
 from ..positions import position_header, position_row
+from ..readings import Channels
 
 _WINDOW = 250  # poses, for what is shown
 
@@ -37,10 +38,15 @@ class LiveSession:
         unknown = [site for site in self.sites if site not in site_names()]
         if unknown:
             raise CaptureError(f"sensor {unknown[0]!r} has no site; say with --sites where it is")
-        self._reconstructor = Reconstructor(
-            database, self.sites, method=method, preset=preset, places=self._worn.places
+        self._has_up = [bool(sensor["has_gyroscope"]) for sensor in status["sensors"]]
+        channels = Channels(self.sites, self._worn.places, self._has_up)
+        self._reconstructor = channels.reconstructor(database, method=method, preset=preset)
+        self._readings = LiveReadings(
+            list(range(len(self.sites))),
+            database.rate_hz,
+            self._has_up,
+            self._worn.gyroscope_biases,
         )
-        self._readings = LiveReadings(list(range(len(self.sites))), database.rate_hz)
         self._joints = database.skeleton.names
         self._times: deque[float] = deque(maxlen=self._reconstructor.latency_frames + 1)
         self._file: TextIO | None = None
@@ -61,7 +67,7 @@ class LiveSession:
         for reading in self._readings.ready(time.monotonic()):
             begin = time.perf_counter()
             self._times.append(reading.time_s)
-            estimate = self._reconstructor.step(self._worn.ideal(reading.specific_force))
+            estimate = self._reconstructor.step(self._worn.ideal(reading.values, self._has_up))
             self.step_s.append(time.perf_counter() - begin)
             if estimate is not None:
                 self._take_up(self._times[0], estimate)

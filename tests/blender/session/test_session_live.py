@@ -205,7 +205,7 @@ def test_a_solver_that_is_too_slow_begins_anew(made):
             pass
 
         def ready(self, now_s):
-            reading = type("Reading", (), {"time_s": 0.0, "specific_force": np.zeros((4, 3))})
+            reading = type("Reading", (), {"time_s": 0.0, "values": np.zeros((4, 3))})
             return [reading] * (MOST_BEHIND + 1)
 
     poses._readings = Late()

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from capture_support import some_take
-from sparse_mocap import FILTER_REACH_S, filtered_at
+from sparse_mocap import FILTER_REACH_S, filtered_at, inclinations
 from sparse_mocap.capture.live_readings import LiveReadings
 from sparse_mocap.capture.sample_log import SAMPLE
+from sparse_mocap.take import filtered_channel
 
 START_S = 100.0
 LONGEST_WAIT_S = 0.1
@@ -23,14 +26,15 @@ def streamed(silent_s: tuple[float, float] = (0.0, 0.0), has_clock: bool = True)
         part["device_time_s"] = record.times_s + 7.0 * index if has_clock else np.nan
         part["arrival_ns"] = (START_S + record.times_s) * 1e9
         part["specific_force"] = record.specific_force
+        part["angular_velocity"] = record.angular_velocity
         is_silent = (record.times_s >= silent_s[0]) & (record.times_s < silent_s[1])
         parts.append(part if index == 0 else part[~is_silent])
     samples = np.concatenate(parts)
     return samples[np.argsort(samples["arrival_ns"], kind="stable")]
 
 
-def played(samples: np.ndarray, step_s: float) -> tuple[np.ndarray, np.ndarray, float]:
-    live = LiveReadings([0, 1], 25.0)
+def played(samples: np.ndarray, step_s: float, **how: Any) -> tuple[np.ndarray, np.ndarray, float]:
+    live = LiveReadings([0, 1], 25.0, **how)
     readings, late_s = [], 0.0
     for now_s in np.arange(START_S, START_S + 4.0, step_s):
         arrived = samples["arrival_ns"] * 1e-9
@@ -40,7 +44,7 @@ def played(samples: np.ndarray, step_s: float) -> tuple[np.ndarray, np.ndarray, 
             late_s = max(late_s, now_s - reading.time_s)
     return (
         np.array([reading.time_s for reading in readings]),
-        np.array([reading.specific_force for reading in readings]),
+        np.array([reading.values for reading in readings]),
         late_s,
     )
 
@@ -56,6 +60,22 @@ def test_they_are_what_the_whole_take_gives(step_s: float, has_clock: bool) -> N
         inner = times > START_S + FILTER_REACH_S
         assert forces[inner, index] == pytest.approx(whole[inner], abs=1e-3)
     assert late_s < FILTER_REACH_S + step_s + 0.05
+
+
+def test_directions_are_those_of_the_whole_take() -> None:
+    bias = np.array([[0.2, -0.1, 0.3], [0.0, 0.0, 0.0]])
+    samples = streamed()
+    first = samples["sensor"] == 0
+    samples["angular_velocity"][first] += bias[0].astype(np.float32)
+    times, values, _ = played(samples, 0.01, has_up=[True, False], gyroscope_biases=bias)
+    assert values.shape[1:] == (3, 3)
+    record = some_take(4.0, 2).sensors["left_wrist"]
+    assert record.angular_velocity is not None
+    up = inclinations(record.times_s, record.specific_force, record.angular_velocity)
+    whole = filtered_channel(START_S + record.times_s, up, times)
+    known = np.isfinite(whole).all(axis=1) & np.isfinite(values[:, 2]).all(axis=1)
+    assert known[times > START_S + 1.0].all()
+    assert values[known, 2] == pytest.approx(whole[known], abs=2e-3)
 
 
 def test_a_silent_sensor_is_waited_for_and_then_left_out() -> None:
