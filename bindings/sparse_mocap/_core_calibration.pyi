@@ -9,13 +9,6 @@ from numpy.typing import ArrayLike
 from ._core_motion import Skeleton
 from ._core_types import Floats
 
-class CounterUnwrapper:
-    """Unwraps a counter of a few bits."""
-
-    def __init__(self, bits: int) -> None: ...
-    def unwrap(self, raw: int, expected_advance: int = 0) -> int:
-        """The value nearest to the last one plus expected_advance that has these low bits."""
-
 class ClockModel:
     """Maps a device's clock to the host's; arrivals are only ever late."""
 

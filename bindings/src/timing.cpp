@@ -82,9 +82,6 @@ void bind_inclination(py::module_& m) {
 }  // namespace
 
 void bind_timing(py::module_& m) {
-  py::class_<CounterUnwrapper>(m, "CounterUnwrapper")
-      .def(py::init<int>(), py::arg("bits"))
-      .def("unwrap", &CounterUnwrapper::unwrap, py::arg("raw"), py::arg("expected_advance") = 0);
   py::class_<ClockModel>(m, "ClockModel")
       .def(py::init([](double largest_drift_ppm, double window_s) {
              return ClockModel({1e-6 * largest_drift_ppm, window_s, 1.0});

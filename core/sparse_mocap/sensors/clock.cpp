@@ -51,9 +51,10 @@ double mean_slope(const std::vector<Point>& points, const std::vector<Point>& hu
   std::vector<double> lateness;
   for (const Point& p : points) lateness.push_back(p.y - intercept - likeliest * p.x);
   // How far apart the promptest arrivals are: only these touch a line.
-  const auto tenth = lateness.begin() + static_cast<std::ptrdiff_t>(lateness.size() / 10);
+  const std::size_t num_promptest = lateness.size() / 10;
+  const auto tenth = lateness.begin() + static_cast<std::ptrdiff_t>(num_promptest);
   std::nth_element(lateness.begin(), tenth, lateness.end());
-  const double unit = std::max(*tenth / (1.0 + static_cast<double>(lateness.size() / 10)), 1e-9);
+  const double unit = std::max(*tenth / (1.0 + static_cast<double>(num_promptest)), 1e-9);
   const double reach = 40.0 * unit / (points.back().x - points.front().x);
   const double top = height_below(hull, likeliest, centre);
   double weights = 0.0, sum = 0.0;
@@ -69,26 +70,6 @@ double mean_slope(const std::vector<Point>& points, const std::vector<Point>& hu
 }
 
 }  // namespace
-
-CounterUnwrapper::CounterUnwrapper(int bits) : bits_(bits) {
-  if (bits < 1 || bits > 64) throw std::invalid_argument("a counter has 1 to 64 bits");
-}
-
-std::int64_t CounterUnwrapper::unwrap(std::uint64_t raw, std::int64_t expected_advance) {
-  const int unused = 64 - bits_;
-  const std::uint64_t low = (raw << unused) >> unused;
-  if (!has_last_) {
-    has_last_ = true;
-    last_ = static_cast<std::int64_t>(low);
-    return last_;
-  }
-  const std::int64_t expected = last_ + expected_advance;
-  // Shifting up and back with its sign takes the difference modulo the range to the nearest.
-  const auto difference =
-      static_cast<std::int64_t>((low - static_cast<std::uint64_t>(expected)) << unused) >> unused;
-  last_ = expected + difference;
-  return last_;
-}
 
 ClockModel::ClockModel(ClockSettings settings) : settings_(settings) {
   if (!(settings.largest_drift > 0.0 && settings.largest_drift < 0.5 && settings.window_s > 1.0 &&

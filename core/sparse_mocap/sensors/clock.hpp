@@ -7,23 +7,6 @@
 
 namespace sparse_mocap {
 
-// Unwraps a counter of a few bits (sample counters, ticks of a device's clock).
-class CounterUnwrapper {
- public:
-  // 1 to 64 bits. Throws std::invalid_argument.
-  explicit CounterUnwrapper(int bits);
-
-  // The value nearest to the last one plus expected_advance that has these low bits; the first
-  // value is raw itself. Steps back come out as such (repeated and late samples). expected_advance
-  // bridges silences longer than half the counter's range.
-  std::int64_t unwrap(std::uint64_t raw, std::int64_t expected_advance = 0);
-
- private:
-  int bits_;
-  bool has_last_ = false;
-  std::int64_t last_ = 0;
-};
-
 struct ClockSettings {
   double largest_drift = 500e-6;  // a device's clock against the host's, as a part
   double window_s = 600.0;        // older arrivals are forgotten

@@ -8,45 +8,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include "sparse_mocap/streams/unwrap.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
 namespace {
 
 using testing::Random;
-
-TEST(CounterUnwrapper, CountsOnThroughWrapsOfAnyWidth) {
-  for (const int bits : {1, 8, 12, 16, 24, 32, 63, 64}) {
-    CounterUnwrapper counter(bits);
-    const std::uint64_t range = bits == 64 ? 0 : std::uint64_t{1} << bits;
-    const std::uint64_t start = range - 3;  // modulo 2^64
-    const std::int64_t first = counter.unwrap(start);
-    for (std::int64_t step = 1; step < 10; ++step) {
-      const std::uint64_t count = start + static_cast<std::uint64_t>(step);
-      const std::uint64_t raw = range == 0 ? count : count % range;
-      EXPECT_EQ(counter.unwrap(raw, bits == 1 ? 1 : 0), first + step) << bits;
-    }
-  }
-}
-
-TEST(CounterUnwrapper, TellsRepeatsStepsBackAndGapsAsSuch) {
-  CounterUnwrapper counter(16);
-  EXPECT_EQ(counter.unwrap(65534), 65534);
-  EXPECT_EQ(counter.unwrap(65534), 65534);
-  EXPECT_EQ(counter.unwrap(8), 65544);
-  EXPECT_EQ(counter.unwrap(65530), 65530);
-}
-
-TEST(CounterUnwrapper, BridgesLongSilencesByWhatIsExpected) {
-  CounterUnwrapper counter(8);
-  counter.unwrap(10);
-  EXPECT_EQ(counter.unwrap((10 + 1000) % 256, 980), 1010);
-}
-
-TEST(CounterUnwrapper, RefusesImpossibleWidths) {
-  EXPECT_THROW(CounterUnwrapper(0), std::invalid_argument);
-  EXPECT_THROW(CounterUnwrapper(65), std::invalid_argument);
-}
 
 struct Stream {
   double drift = 0.0;      // device seconds are this much shorter
@@ -60,7 +28,7 @@ struct Stream {
 // host time begins somewhere.
 double largest_error_s(const Stream& stream, unsigned seed, ClockModel& clock) {
   Random random(seed);
-  CounterUnwrapper ticks(16);
+  streams::TickClock ticks(16, 1e-4);
   const double begin_s = 12345.678;
   std::vector<double> device, host;
   double last = -1.0;
@@ -72,7 +40,7 @@ double largest_error_s(const Stream& stream, unsigned seed, ClockModel& clock) {
       const double true_s = begin_s + i / stream.rate_hz;
       const auto tick = static_cast<std::uint64_t>(
           std::llround((i / stream.rate_hz + 3.0) * (1.0 - stream.drift) * 1e4));
-      device.push_back(static_cast<double>(ticks.unwrap(tick % 65536)) * 1e-4);
+      device.push_back(ticks.take(tick % 65536).time_s);
       host.push_back(true_s);
       const double told =
           clock.observe(device.back(), begin_s + (end - 1) / stream.rate_hz + late_s);
