@@ -21,6 +21,7 @@ Of HDM05 and CMU clips reconstructed from other people's or other motions, two i
 that came out worse than a constant pose are above it, and one in eight of the better ones.
 """
 
+_FASTEST_RADPS = 15.0  # on median; nobody turns a limb so fast for long
 _QUIET_MPS2 = 1.0  # readings that vary less than this fit anything
 
 
@@ -49,7 +50,7 @@ def is_unlike_the_database(solved: Reconstruction, readings: Floats) -> bool:
 
 
 def suspicions(take: Take) -> list[str]:
-    """Returns a line for each sensor whose readings can hardly be specific forces in m/s^2."""
+    """Returns a line for each sensor whose readings can hardly be in m/s^2 and rad/s."""
     lines = []
     for site, record in take.sensors.items():
         size = float(np.median(np.linalg.norm(record.specific_force, axis=1)))
@@ -60,6 +61,13 @@ def suspicions(take: Take) -> list[str]:
             )
         elif np.ptp(record.specific_force, axis=0).max() == 0:
             lines.append(f"{site} always reads the same")
+        if record.angular_velocity is not None:
+            turn = float(np.median(np.linalg.norm(record.angular_velocity, axis=1)))
+            if turn > _FASTEST_RADPS:
+                lines.append(
+                    f"{site} turns at {turn:.0f} rad/s on median; gx,gy,gz are in rad/s, and "
+                    "--no-gyroscopes leaves them out"
+                )
     return lines
 
 

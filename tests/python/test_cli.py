@@ -223,6 +223,23 @@ def test_reconstruct_says_when_readings_cannot_be_specific_forces(
     assert "warning: left_wrist reads 1.0" in result.stderr
 
 
+def test_reconstruct_says_when_rates_cannot_be_radians(
+    cli: Cli, take_path: Path, database_path: Path, tmp_path: Path
+) -> None:
+    take = read_take(take_path)
+    in_degrees = {
+        site: SensorRecord(
+            record.times_s, record.specific_force, np.degrees(record.angular_velocity)
+        )
+        for site, record in take.sensors.items()
+    }
+    write_take(tmp_path / "deg.csv", Take(in_degrees))
+    for path, is_told in ((tmp_path / "deg.csv", True), (take_path, False)):
+        result = cli("reconstruct", "--database", database_path, path, "-o", tmp_path / "o.bvh")
+        assert result.exit_code == 0
+        assert ("rad/s on median" in result.stderr) == is_told
+
+
 def test_reconstruct_says_when_the_database_knows_nothing_of_it(
     cli: Cli, take_path: Path, database_path: Path, tmp_path: Path
 ) -> None:
