@@ -27,6 +27,8 @@ class StreamParser:
         """
     def reset(self) -> None:
         """The connection was opened anew: sensors keep their indices, counters go on."""
+    def begin_message(self) -> None:
+        """After reset: the wire was idle for so long that what comes first begins a message."""
     def take_replies(self) -> list[bytes]:
         """What the protocol wants answered."""
     @property

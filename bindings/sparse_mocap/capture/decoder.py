@@ -12,6 +12,11 @@ from .drivers import keep_alive_commands, make_parser, parsed, site_order, start
 from .sample_log import Samples
 
 
+IDLE_S = 0.2
+"""A port without a byte for this long after it was opened was not opened amid a message: devices
+send a message in one go, adapters hold bytes back for some 20 ms."""
+
+
 @dataclass
 class Sensor:
     """A sensor of the capture."""
@@ -41,12 +46,12 @@ class Decoder:
         self.sensors: list[Sensor] = []
         self._links = [_LinkDecoder(link) for link in config.links]
 
-    def connected(self, link: int) -> tuple[bytes, ...]:
+    def connected(self, link: int, now_ns: int) -> tuple[bytes, ...]:
         """The link was opened anew; returns the commands that start its device."""
         for sensor in self.sensors:
             if sensor.link == link:
                 sensor.last_counter = -1
-        return self._links[link].connected()
+        return self._links[link].connected(now_ns)
 
     def keep_alive(self, link: int) -> tuple[bytes, ...]:
         """What the link's device wants to hear every second."""
@@ -55,6 +60,7 @@ class Decoder:
     def arrived(self, link: int, arrival_ns: int, data: bytes, sender: str = "") -> Decoded:
         """Decodes the next bytes of a link, or a datagram when there is a sender."""
         of_link = self._links[link]
+        of_link.heard(arrival_ns)
         samples = parsed(of_link.parser, data, sender)
         self._name_sensors(link)
         samples["arrival_ns"] = arrival_ns
@@ -128,12 +134,20 @@ class _LinkDecoder:
         self.parser = make_parser(config.driver, config.options)
         self.numbers: list[int] = []
         self._num_resets = 0
+        self._opened_ns: int | None = None
+        """Until the first byte comes."""
         self._commands = start_commands(config.driver, config.options)
         self.keep_alive = keep_alive_commands(config.driver, config.options)
 
-    def connected(self) -> tuple[bytes, ...]:
+    def connected(self, now_ns: int) -> tuple[bytes, ...]:
         self.parser.reset()
+        self._opened_ns = now_ns
         return self._commands
+
+    def heard(self, arrival_ns: int) -> None:
+        if self._opened_ns is not None and arrival_ns - self._opened_ns > IDLE_S * 1e9:
+            self.parser.begin_message()
+        self._opened_ns = None
 
     def replies(self) -> tuple[bytes, ...]:
         replies = tuple(self.parser.take_replies())

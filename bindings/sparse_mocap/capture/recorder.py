@@ -75,8 +75,8 @@ class Recorder:
     def connected(self, link: int, port: str) -> tuple[bytes, ...]:
         """A link's port was opened."""
         with self._lock:
-            self._event(link, {"event": "connected", "port": port})
-            return self._decoder.connected(link)
+            now_ns = self._event(link, {"event": "connected", "port": port})
+            return self._decoder.connected(link, now_ns)
 
     def keep_alive(self, link: int) -> tuple[bytes, ...]:
         """What the link's device wants to hear every second."""
@@ -152,11 +152,13 @@ class Recorder:
                 ],
             }
 
-    def _event(self, link: int, event: dict[str, Any]) -> None:
+    def _event(self, link: int, event: dict[str, Any]) -> int:
+        now_ns = time.monotonic_ns()
         try:
-            self._raw.append_event(link, time.monotonic_ns(), event)
+            self._raw.append_event(link, now_ns, event)
         except OSError as error:
             raise self._log_error(error) from error
+        return now_ns
 
     def _log_error(self, error: OSError) -> LogError:
         return LogError(f"{self.folder}: {error.strerror or error}; free some space")

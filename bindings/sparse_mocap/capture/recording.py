@@ -96,7 +96,7 @@ class _Replay:
         event = record.event
         what = event.get("event")
         if what == "connected":
-            self.decoder.connected(record.link)
+            self.decoder.connected(record.link, record.arrival_ns)
             self._connections[record.link] = self._connections.get(record.link, 0) + 1
         elif what == "recording":
             self.begins_ns.append(record.arrival_ns)

@@ -96,16 +96,35 @@ TEST(ClockModel, IsWithinAMillisecondUnderDriftJitterAndWraps) {
     }
 }
 
-TEST(ClockModel, IsNearAMillisecondWithThreeHundredBurstsToGoBy) {
+// Three hundred arrivals leave room for a line 2 ms off now and then, however it is chosen.
+TEST(ClockModel, IsWithinAMillisecondWithThreeHundredBurstsToGoBy) {
   std::vector<double> errors_s;
-  for (unsigned seed = 1; seed <= 5; ++seed) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
     ClockModel clock;
     errors_s.push_back(largest_error_s({.drift = 100e-6, .burst = 200}, seed, clock));
-    EXPECT_NEAR(clock.drift_ppm(), 100.0, 5.0);
+    EXPECT_NEAR(clock.drift_ppm(), 100.0, 8.0);
   }
   std::sort(errors_s.begin(), errors_s.end());
-  EXPECT_LT(errors_s[2], 1e-3);
-  EXPECT_LT(errors_s[4], 2.5e-3);
+  EXPECT_LT(errors_s[9], 0.6e-3);
+  EXPECT_LT(errors_s[17], 1e-3);
+  EXPECT_LT(errors_s[19], 2.5e-3);
+}
+
+// Where the largest delay drifts and the least does not, the least decides.
+TEST(ClockModel, KeepsToTheLeastDelayWhenTheLargestGrows) {
+  Random random(5);
+  ClockModel clock;
+  for (int i = 0; i < 600; ++i)
+    clock.observe(i, 100.0 + i + random.in(0.0, 0.016 * (1.0 + i / 600.0)));
+  for (const double at : {0.0, 599.0}) EXPECT_NEAR(clock.host_time_s(at), 100.0 + at, 0.5e-3);
+}
+
+// A tenth of all delays alike leave the sharpest of edges above.
+TEST(ClockModel, BearsManyEqualDelays) {
+  Random random(6);
+  ClockModel clock;
+  for (int i = 0; i < 600; ++i) clock.observe(i, 100.0 + i + std::min(random.in(0.0, 0.02), 0.016));
+  for (const double at : {0.0, 599.0}) EXPECT_NEAR(clock.host_time_s(at), 100.0 + at, 0.5e-3);
 }
 
 TEST(ClockModel, TellsTheJitter) {
