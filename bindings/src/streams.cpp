@@ -166,6 +166,10 @@ void bind_parser(py::module_& m) {
            [](SharedParser& shared) {
              shared.with_parser([](auto& parser) { parser.begin_message(); });
            })
+      .def("interrupt",
+           [](SharedParser& shared) {
+             shared.with_parser([](auto& parser) { parser.interrupt(); });
+           })
       .def("take_replies",
            [](SharedParser& shared) {
              return list_of(asked(shared, [](auto& parser) { return parser.take_replies(); }));

@@ -36,6 +36,8 @@ class Decoded:
 
     samples: Samples
     replies: tuple[bytes, ...] = ()
+    has_news: bool = False
+    """A sensor was met or named anew."""
 
 
 class Decoder:
@@ -53,6 +55,13 @@ class Decoder:
                 sensor.last_counter = -1
         return self._links[link].connected(now_ns)
 
+    def interrupted(self) -> None:
+        """What comes next is not what followed."""
+        for of_link in self._links:
+            of_link.parser.interrupt()
+        for sensor in self.sensors:
+            sensor.last_counter = -1
+
     def keep_alive(self, link: int) -> tuple[bytes, ...]:
         """What the link's device wants to hear every second."""
         return self._links[link].keep_alive
@@ -62,12 +71,12 @@ class Decoder:
         of_link = self._links[link]
         of_link.heard(arrival_ns)
         samples = parsed(of_link.parser, data, sender)
-        self._name_sensors(link)
+        has_news = self._name_sensors(link)
         samples["arrival_ns"] = arrival_ns
         if len(samples):
             samples["sensor"] = np.asarray(of_link.numbers, np.uint16)[samples["sensor"]]
             self._count_missing(samples)
-        return Decoded(samples, of_link.replies())
+        return Decoded(samples, of_link.replies(), has_news)
 
     def counters(self, link: int) -> dict[str, int]:
         """What the link's parser counted."""
@@ -104,13 +113,19 @@ class Decoder:
         is_named = all(_site_in(sensor.name, known) for sensor in self.sensors)
         return not is_named and len(self._config.sites) < len(self.sensors)
 
-    def _name_sensors(self, link: int) -> None:
+    def _name_sensors(self, link: int) -> bool:
+        """Returns whether anything is new."""
         of_link = self._links[link]
-        for local, name in enumerate(of_link.parser.sensor_names):
+        names = of_link.parser.sensor_names
+        if names == of_link.names:
+            return False
+        of_link.names = names
+        for local, name in enumerate(names):
             if local == len(of_link.numbers):
                 of_link.numbers.append(len(self.sensors))
                 self.sensors.append(Sensor(link, local, name))
             self.sensors[of_link.numbers[local]].name = name
+        return True
 
     def _count_missing(self, samples: Samples) -> None:
         for number, counter in zip(
@@ -133,6 +148,7 @@ class _LinkDecoder:
         self.config = config
         self.parser = make_parser(config.driver, config.options)
         self.numbers: list[int] = []
+        self.names: list[str] = []
         self._num_resets = 0
         self._opened_ns: int | None = None
         """Until the first byte comes."""

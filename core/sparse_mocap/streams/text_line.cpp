@@ -201,10 +201,14 @@ void Parser::parse(ByteView bytes) {
   lines_.feed(bytes, all_counts(), [&](ByteView line) { take(text_of(line)); });
 }
 
-void Parser::restart() {
+void Parser::interrupt() {
   lines_.reset();
   first_line_.clear();
   is_first_line_ = skips_first_line_;
+}
+
+void Parser::restart() {
+  interrupt();
   columns_ = profile_.columns;
   for (auto& [name, device] : devices_) {
     const int sensor = device.sensor;

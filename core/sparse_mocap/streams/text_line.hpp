@@ -63,6 +63,7 @@ class Parser : public StreamParser {
   explicit Parser(const Options& options);
 
   void begin_message() override { is_first_line_ = false; }
+  void interrupt() override;
 
   static std::vector<OptionSpec> options();
   static std::vector<Bytes> start_commands(const Options& options);
