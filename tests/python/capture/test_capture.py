@@ -311,9 +311,7 @@ def test_sensors_on_ports_of_their_own_make_one_take(play: Play, tmp_path: Path)
 
 
 @pytest.mark.parametrize("columns", ["ax,ay,az,gx,gy,gz", "time,sensor,ax,ay,az"])
-def test_not_even_the_first_line_of_text_is_lost(
-    columns: str, play: Play, tmp_path: Path
-) -> None:
+def test_not_even_the_first_line_of_text_is_lost(columns: str, play: Play, tmp_path: Path) -> None:
     take = some_take(1.5, 2)
     options = {"columns": columns}
     lines = play(take, "text_line", options=options).lines

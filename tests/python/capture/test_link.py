@@ -234,6 +234,16 @@ def test_a_busy_disk_does_not_make_the_wire_run_over(links: Links, device: Devic
     assert notes.data == everything
 
 
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_what_nobody_thought_of_is_told(links: Links) -> None:
+    def opener(port: str, baud: int) -> Any:
+        raise NotImplementedError("no such thing")
+
+    link, _ = links("new://thing", opener=opener)
+    until(lambda: link.state is State.FAILED)
+    assert "no such thing" in link.message
+
+
 def test_pyserials_loop(links: Links) -> None:
     _, notes = links("loop://")
     until(lambda: notes.data == b"go")
