@@ -16,8 +16,8 @@ import numpy as np
 from .config import CaptureConfig
 from .decoder import Decoder
 from .errors import LogError
-from .link import Arrived, Link, State
 from .kept_log import KeptLog
+from .link import Arrived, Link, State
 from .raw_log import Kind, Record, sent_by
 from .sample_log import SampleLogWriter, Samples
 

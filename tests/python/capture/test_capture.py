@@ -310,22 +310,6 @@ def test_sensors_on_ports_of_their_own_make_one_take(play: Play, tmp_path: Path)
     assert [len(record.times_s) for record in recorded.take.sensors.values()] == [200, 200]
 
 
-@pytest.mark.parametrize("columns", ["ax,ay,az,gx,gy,gz", "time,sensor,ax,ay,az"])
-def test_not_even_the_first_line_of_text_is_lost(columns: str, play: Play, tmp_path: Path) -> None:
-    take = some_take(1.5, 2)
-    options = {"columns": columns}
-    lines = play(take, "text_line", options=options).lines
-    links = tuple(LinkConfig(line.path, "text_line", options=options) for line in lines)
-    sites = tuple(take.sites)
-    with start_capture(CaptureConfig(links, sites, must_record=True), tmp_path / "c") as client:
-        until(lambda: client.status()["samples"] == 300)
-        client.stop()
-    recorded = recording_to_take(tmp_path / "c").take
-    assert recorded.sites == take.sites
-    for own, sent in zip(recorded.sensors.values(), take.sensors.values(), strict=True):
-        assert own.specific_force == pytest.approx(sent.specific_force, abs=1e-4)
-
-
 def test_two_sensors_with_one_id_are_told(play: Play, tmp_path: Path) -> None:
     options = {"columns": "time,sensor,counter,ax,ay,az"}
     faults = Faults(is_id_duplicate=True)

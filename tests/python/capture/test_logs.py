@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pytest import MonkeyPatch
 from sparse_mocap.capture import sample_log
 from sparse_mocap.capture.raw_log import MAGIC, Kind, RawLogWriter, Record, read_records
 from sparse_mocap.capture.sample_log import SAMPLE, SampleLogReader, SampleLogWriter
@@ -129,7 +128,9 @@ def test_a_torn_sample_is_not_read(tmp_path: Path) -> None:
         assert reader.read()["counter"].tolist() == [2]
 
 
-def test_a_log_in_many_files_is_read_as_one(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
+def test_a_log_in_many_files_is_read_as_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(sample_log, "PER_FILE", 16)
     log = SampleLogWriter(tmp_path)
     with closing(log), closing(SampleLogReader(tmp_path)) as reader:
@@ -143,7 +144,7 @@ def test_a_log_in_many_files_is_read_as_one(tmp_path: Path, monkeypatch: MonkeyP
 
 
 def test_who_was_stalled_too_long_goes_on_with_the_oldest_left(
-    tmp_path: Path, monkeypatch: MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sample_log, "PER_FILE", 16)
     log = SampleLogWriter(tmp_path)

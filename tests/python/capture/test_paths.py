@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""pyserial's URLs over real sockets, and several ports that leave and come back together."""
+"""Whole paths from a device: URLs over real sockets, ports of their own, a hub that is pulled."""
 
 from __future__ import annotations
 
@@ -136,11 +136,12 @@ def test_every_byte_passes_both_ways_and_again_after_a_break(
         link.start()
         try:
             for times in (1, 2):
+                expected = times * every
                 until(lambda: link.state is State.CONFIGURING)
                 assert os.read(terminal.master, 2) == b"go"
                 os.write(terminal.master, every)
-                until(lambda count=times * len(every): len(notes.data) >= count)
-                assert notes.data == times * every
+                until(lambda: len(notes.data) >= len(expected))  # noqa: B023 - waits at once
+                assert notes.data == expected
                 assert bridge.is_bare or bridge.port.baudrate == 57600
                 if times == 1:
                     bridge.hang_up()
@@ -170,6 +171,22 @@ def test_a_capture_over_the_network_loses_nothing(scheme: str, play: Play, tmp_p
         assert own.specific_force == pytest.approx(last, abs=1e-4)
     # A record for each byte would make the log many times the data.
     assert (tmp_path / "c" / "raw.log").stat().st_size < 600 * 800
+
+
+@pytest.mark.parametrize("columns", ["ax,ay,az,gx,gy,gz", "time,sensor,ax,ay,az"])
+def test_not_even_the_first_line_of_text_is_lost(columns: str, play: Play, tmp_path: Path) -> None:
+    take = some_take(1.5, 2)
+    options = {"columns": columns}
+    lines = play(take, "text_line", options=options).lines
+    links = tuple(LinkConfig(line.path, "text_line", options=options) for line in lines)
+    sites = tuple(take.sites)
+    with start_capture(CaptureConfig(links, sites, must_record=True), tmp_path / "c") as client:
+        until(lambda: client.status()["samples"] == 300)
+        client.stop()
+    recorded = recording_to_take(tmp_path / "c").take
+    assert recorded.sites == take.sites
+    for own, sent in zip(recorded.sensors.values(), take.sensors.values(), strict=True):
+        assert own.specific_force == pytest.approx(sent.specific_force, abs=1e-4)
 
 
 def test_a_hub_that_is_pulled_gives_every_link_its_own_device_back() -> None:
