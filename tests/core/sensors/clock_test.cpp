@@ -96,6 +96,26 @@ TEST(ClockModel, IsWithinAMillisecondUnderDriftJitterAndWraps) {
     }
 }
 
+TEST(ClockModel, IsWithinAMillisecondAtEveryRate) {
+  for (const double rate_hz : {30.0, 60.0, 2000.0}) {
+    ClockModel clock;
+    EXPECT_LT(largest_error_s({.drift = 100e-6, .rate_hz = rate_hz}, 2, clock), 1e-3) << rate_hz;
+  }
+}
+
+// The window is ten minutes long: what it lets go of must not be missed.
+TEST(ClockModel, DoesNotDriftInAnHour) {
+  Random random(8);
+  ClockModel clock;
+  double worst_s = 0.0;
+  for (int i = 0; i < 3600 * 100; ++i) {
+    const double true_s = 5e4 + i * 0.01;
+    const double told = clock.observe(i * 0.01 * (1.0 - 100e-6), true_s + random.in(0.0, 0.05));
+    if (i > 60 * 100) worst_s = std::max(worst_s, std::abs(told - true_s));
+  }
+  EXPECT_LT(worst_s, 1e-3);
+}
+
 // Three hundred arrivals leave room for a line 2 ms off now and then, however it is chosen.
 TEST(ClockModel, IsWithinAMillisecondWithThreeHundredBurstsToGoBy) {
   std::vector<double> errors_s;

@@ -250,8 +250,9 @@ TEST(Ximu3, DropsWhatIsNotAMessage) {
 
 TEST(TextLine, DropsEveryLineThatIsNotAsTheProfileSays) {
   const OptionMap options{{"columns", "ax,ay,az"}};
-  for (const auto* bad : {"0,0", "0,0,9.81,1", "ax,ay,az", "0,0,nan", "1,5;2", "0,0,ovf",
-                          "Initializing I2C devices...", "0,,9.81", "0x1,0,9", "\x80,0,9.81"}) {
+  for (const auto* bad :
+       {"0,0", "0,0,9.81,1", "ax,ay,az", "0,0,nan", "1,5;2", "0,0,ovf",
+        "Initializing I2C devices...", "0,0,9.Booting", "0,,9.81", "0x1,0,9", "\x80,0,9.81"}) {
     const auto result =
         parsed("text_line", from_text("half\n" + std::string(bad) + "\n0,0,9.81\n"), options);
     EXPECT_EQ(result.samples.size(), 1u) << bad;

@@ -14,7 +14,6 @@ import pytest
 from capture_support import SITES, some_take
 from sparse_mocap import Take
 from sparse_mocap.capture import CaptureConfig, LinkConfig, kept_log, recording_to_take, sample_log
-from sparse_mocap.capture.decoder import IDLE_S, Decoder
 from sparse_mocap.capture.drivers import Encoder
 from sparse_mocap.capture.emulator import instants
 from sparse_mocap.capture.recorder import Recorder
@@ -156,12 +155,3 @@ def test_a_file_torn_at_its_begin_spoils_no_log(
         assert {k: len(v.times_s) for k, v in again.items()} == {
             k: len(v.times_s) for k, v in whole.items()
         }
-
-
-def test_the_first_line_counts_when_the_wire_was_idle_before_it() -> None:
-    link = LinkConfig("port", "text_line", options={"columns": "ax,ay,az"})
-    for idle_s, num_samples in ((0.5 * IDLE_S, 1), (1.5 * IDLE_S, 2)):
-        decoder = Decoder(CaptureConfig((link,)))
-        decoder.connected(0, 10**9)
-        came = decoder.arrived(0, 10**9 + int(idle_s * 1e9), b"0,0,9\r\n0,0,8\r\n")
-        assert len(came.samples) == num_samples
