@@ -115,11 +115,12 @@ def cpu_s(pid: int) -> float:
 def steady(folder: Path, seconds: float) -> dict[str, Any]:
     device = Device(seconds, folder / "port")
     client = start_capture(config_of(device.path), folder / "c")
-    pid, num_read, begin = client.session.pid, 0, time.monotonic()
+    pid, num_read = client.session.pid, 0
     chance = random.Random(1)
-    next_stall = begin + 5.0
+    next_stall = time.monotonic() + 5.0
     used: dict[str, float] = {}
-    while device.process.poll() is None and time.monotonic() - begin < seconds + 1.0:
+    expected = round(seconds * RATE_HZ) * NUM_SENSORS
+    while device.process.poll() is None and num_read < expected:
         num_read += len(client.read())
         used = {"memory_mb": memory_mb(pid), "cpu_s": cpu_s(pid)}
         if time.monotonic() > next_stall:
@@ -134,10 +135,10 @@ def steady(folder: Path, seconds: float) -> dict[str, Any]:
     client.stop()
     begin_ns, num_overrun, _ = device.told()
     recorded = recording_to_take(folder / "c")
-    expected = round(seconds * RATE_HZ) * NUM_SENSORS
     kept = sum(len(record.times_s) for record in recorded.take.sensors.values())
     return {
         "expected": expected, "kept": kept, "lost": expected - kept,
+        "before_the_first_s": (recorded.begin_ns - begin_ns) * 1e-9,
         "missed_by_clients": status["samples"] - num_read, "not_fetched_in_time": num_overrun,
         "missing_by_counter": recorded.num_missing,
         "worst_time_error_ms": 1e3 * worst_error_s(recorded, begin_ns),

@@ -60,7 +60,6 @@ class SampleLogWriter:
         while len(samples):
             number, at = divmod(self.num_samples, PER_FILE)
             if number > self._number:
-                self.close()
                 self._begin_file(number)
             part, samples = samples[: PER_FILE - at], samples[PER_FILE - at :]
             rest = memoryview(part.tobytes())
@@ -82,9 +81,12 @@ class SampleLogWriter:
             self._file.close()
 
     def _begin_file(self, number: int) -> None:
-        self._number = number
-        self._file = open(log_path(self._folder, number), "xb", buffering=0)  # noqa: SIM115
-        self._file.write(MAGIC)
+        path = log_path(self._folder, number)
+        file = open(path, "xb", buffering=0)  # noqa: SIM115
+        file.write(MAGIC)
+        if number:
+            self._file.close()
+        self._file, self._number = file, number
 
 
 class SampleLogReader:
