@@ -275,8 +275,13 @@ void expect_no_wrong_sample(const std::string& columns, const std::vector<std::s
     const auto torn = parsed("text_line", from_text(text.substr(cut)), options);
     const std::size_t lost = whole.samples.size() - torn.samples.size();
     ASSERT_LE(lost, 1u) << cut;
-    for (std::size_t i = 0; i < torn.samples.size(); ++i)
-      expect_near(torn.samples[i].specific_force, whole.samples[i + lost].specific_force, 1e-12);
+    for (std::size_t i = 0; i < torn.samples.size(); ++i) {
+      const auto &got = torn.samples[i], &sent = whole.samples[i + lost];
+      expect_near(got.specific_force, sent.specific_force, 1e-12);
+      EXPECT_EQ(got.counter, sent.counter) << cut;
+      EXPECT_TRUE(same(got.time_s, sent.time_s) || std::abs(got.time_s - sent.time_s) < 1e-9)
+          << cut;
+    }
   }
   expect_same_in_pieces("text_line", from_text(text), options);
 }
@@ -286,6 +291,8 @@ TEST(TextLine, NeverTakesATornFirstLineForAWholeOne) {
   expect_no_wrong_sample("time,ax,ay,az",
                          {"1234567,0.1,0.2,9.81", "1244567,0.1,0.3,9.8", "1254567,0,0,9"});
   expect_no_wrong_sample("time,ax,ay,az", {"7.51,-0.1,0,9.8", "8.02,0,0,9.8", "8.53,0,0,9.8"},
+                         {{"time_unit", "s"}});
+  expect_no_wrong_sample("time,ax,ay,az", {"7.5,0,0,9.8", "7.6,0,0,9.7", "7.7,0,0,9.6"},
                          {{"time_unit", "s"}});
   expect_no_wrong_sample("counter,ax,ay,az", {"1009,0,0,9.8", "1010,0,0,9.7", "1011,0,0,9.6"});
   expect_no_wrong_sample("sensor,ax,ay,az", {"arm1,0,0,9.8", "m1,0,0,9.7", "1,0,0,9.6"});
@@ -305,6 +312,7 @@ TEST(TextLine, TakesAFirstLineThatIsSureToBeWhole) {
   EXPECT_EQ(num("skip,ax,ay,az", "x,0,0,9\n"), 1u);
   EXPECT_EQ(num("ax,ay,az", "S:0,0,9\n", {{"prefix", "S:"}}), 1u);
   EXPECT_EQ(num("ax,ay,az", "1,0,0,9\n", {{"prefix", "1,"}}), 0u);
+  EXPECT_EQ(num("sensor,ax,ay,az", "S:a,0,0,9\n", {{"prefix", "S:"}}), 0u);  // perhaps S:S:a
   EXPECT_EQ(num("ax,ay,az", "0,0,9\n0,0,8\n"), 1u);
 }
 
