@@ -27,6 +27,10 @@ class StreamParser:
         """
     def reset(self) -> None:
         """The connection was opened anew: sensors keep their indices, counters go on."""
+    def begin_message(self) -> None:
+        """After reset: the wire was idle for so long that what comes first begins a message."""
+    def interrupt(self) -> None:
+        """Bytes are missing before what comes next: the message that was begun is forgotten."""
     def take_replies(self) -> list[bytes]:
         """What the protocol wants answered."""
     @property

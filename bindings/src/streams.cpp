@@ -162,6 +162,14 @@ void bind_parser(py::module_& m) {
       .def("feed", &SharedParser::feed, py::arg("data"), py::arg("sender") = py::none())
       .def("reset",
            [](SharedParser& shared) { shared.with_parser([](auto& parser) { parser.reset(); }); })
+      .def("begin_message",
+           [](SharedParser& shared) {
+             shared.with_parser([](auto& parser) { parser.begin_message(); });
+           })
+      .def("interrupt",
+           [](SharedParser& shared) {
+             shared.with_parser([](auto& parser) { parser.interrupt(); });
+           })
       .def("take_replies",
            [](SharedParser& shared) {
              return list_of(asked(shared, [](auto& parser) { return parser.take_replies(); }));

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Captures for a long time, and captures that are killed; run by hand, prints what it measured.
+"""Captures for a long time, and captures that are killed; prints what it measured.
 
-    python tests/endurance/capture.py steady [SECONDS]   # default 600
-    python tests/endurance/capture.py kill [TIMES]       # default 100
-    python tests/endurance/capture.py replug [TIMES]     # default 20
+    ./dev endure                   # all, 25 minutes
+    ./dev endure steady [SECONDS]  # default 600
+    ./dev endure kill [TIMES]      # default 100
+    ./dev endure replug [TIMES]    # default 20
 
 `steady`: six sensors at 200 Hz from an emulator in a process of its own. A client stalls for 5 s
 now and then, and is replaced by another. Counted: samples lost on the way, samples that the clients
 missed, the worst error of a sample's time against the emulator's deadline.
 
 `kill`: SIGKILL to the capture or to its client at random moments. Counted: samples that the capture
-had told of and that cannot be read afterwards, holes, and processes or session files left behind.
+had told of and that cannot be read afterwards, holes, and processes, session files or locks of
+ports left behind.
 
 `replug`: the device is unplugged and comes back as another pseudo-terminal. Measured: how long it
 takes from its return to its first sample.
@@ -41,10 +43,12 @@ from sparse_mocap.capture import (
     Emulator,
     Faults,
     LinkConfig,
+    PortError,
     RecordedTake,
     recording_to_take,
     start_capture,
 )
+from sparse_mocap.capture.ports import open_port
 from sparse_mocap.capture.session import FOLDER_VARIABLE, runtime_folder, sessions
 
 DRIVER, NUM_SENSORS, RATE_HZ = "xsens_mt", 6, 200.0
@@ -111,11 +115,12 @@ def cpu_s(pid: int) -> float:
 def steady(folder: Path, seconds: float) -> dict[str, Any]:
     device = Device(seconds, folder / "port")
     client = start_capture(config_of(device.path), folder / "c")
-    pid, num_read, begin = client.session.pid, 0, time.monotonic()
+    pid, num_read = client.session.pid, 0
     chance = random.Random(1)
-    next_stall = begin + 5.0
+    next_stall = time.monotonic() + 5.0
     used: dict[str, float] = {}
-    while device.process.poll() is None and time.monotonic() - begin < seconds + 1.0:
+    expected = round(seconds * RATE_HZ) * NUM_SENSORS
+    while device.process.poll() is None and num_read < expected:
         num_read += len(client.read())
         used = {"memory_mb": memory_mb(pid), "cpu_s": cpu_s(pid)}
         if time.monotonic() > next_stall:
@@ -130,10 +135,10 @@ def steady(folder: Path, seconds: float) -> dict[str, Any]:
     client.stop()
     begin_ns, num_overrun, _ = device.told()
     recorded = recording_to_take(folder / "c")
-    expected = round(seconds * RATE_HZ) * NUM_SENSORS
     kept = sum(len(record.times_s) for record in recorded.take.sensors.values())
     return {
         "expected": expected, "kept": kept, "lost": expected - kept,
+        "before_the_first_s": (recorded.begin_ns - begin_ns) * 1e-9,
         "missed_by_clients": status["samples"] - num_read, "not_fetched_in_time": num_overrun,
         "missing_by_counter": recorded.num_missing,
         "worst_time_error_ms": 1e3 * worst_error_s(recorded, begin_ns),
@@ -165,6 +170,7 @@ def kill(folder: Path, times: int) -> dict[str, Any]:
         victim = ("capture", "consumer")[number % 2]
         counts[victim] += 1
         told = _killed(client, victim, chance.uniform(0.4, 1.5))
+        left += not _is_free(device.path)
         device.process.kill()
         device.process.wait()
         recorded = recording_to_take(where)
@@ -175,7 +181,17 @@ def kill(folder: Path, times: int) -> dict[str, Any]:
             own = record.specific_force
             wrong += int(abs(own - sent[site].specific_force[: len(own)]).max() > 1e-3)
         left += len(sessions()) + len(list(runtime_folder().iterdir()))
+        left += Path(f"/proc/{client.session.pid}").exists()
     return {**counts, "unreadable": unreadable, "holes": holes, "wrong": wrong, "left": left}
+
+
+def _is_free(port: str) -> bool:
+    """Whether nobody holds the port."""
+    try:
+        open_port(port, 115200).close()
+    except PortError:
+        return False
+    return True
 
 
 def _killed(client: CaptureClient, victim: str, after_s: float) -> int:
@@ -221,8 +237,11 @@ def replug(folder: Path, times: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
+PROOFS = {"steady": (steady, 600), "kill": (kill, 100), "replug": (replug, 20)}
+
+
 def main(arguments: list[str]) -> None:
-    what, *rest = arguments
+    what, *rest = arguments or ["all"]
     if what == "emulate":
         seconds, link, *fault = rest
         faults = (
@@ -230,17 +249,15 @@ def main(arguments: list[str]) -> None:
         )
         emulate(float(seconds), link, faults)
         return
-    with tempfile.TemporaryDirectory(prefix="sparse-mocap-endurance-") as name:
-        folder = Path(name)
-        os.environ[FOLDER_VARIABLE] = str(folder / "runtime")
-        if what == "steady":
-            print(json.dumps(steady(folder, float(rest[0]) if rest else 600.0), indent=2))
-        elif what == "kill":
-            print(json.dumps(kill(folder, int(rest[0]) if rest else 100), indent=2))
-        elif what == "replug":
-            print(json.dumps(replug(folder, int(rest[0]) if rest else 20), indent=2))
-        else:
-            raise SystemExit(__doc__)
+    if what != "all" and what not in PROOFS:
+        raise SystemExit(__doc__)
+    for name in PROOFS if what == "all" else (what,):
+        proof, usual = PROOFS[name]
+        with tempfile.TemporaryDirectory(prefix="sparse-mocap-endurance-") as folder:
+            os.environ[FOLDER_VARIABLE] = str(Path(folder) / "runtime")
+            told = proof(Path(folder), int(rest[0]) if rest else usual)
+        load = [round(value, 1) for value in os.getloadavg()]
+        print(name, json.dumps({**told, "load": load}, indent=2), flush=True)
 
 
 if __name__ == "__main__":

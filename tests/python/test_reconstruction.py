@@ -15,6 +15,8 @@ from sparse_mocap import (
     ConfigError,
     MotionDatabase,
     Reconstructor,
+    SensorRecord,
+    Take,
     method_names,
     nearest_poses,
     nearest_windows,
@@ -23,6 +25,7 @@ from sparse_mocap import (
     read_take,
     resampled,
 )
+from sparse_mocap.reconstruction import suspicions
 
 SITES = ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
 
@@ -207,3 +210,25 @@ def test_played_back_frames_are_the_databases(
     assert len(found) == len(readings)
     hidden = database.clips[2].end
     assert ((found >= hidden) & (found < database.num_frames)).all()
+
+
+@pytest.mark.parametrize(
+    ("force", "told"),
+    [
+        (np.zeros(3), "reads 0.00 m/s^2 on median"),
+        (np.array([0.0, 0.0, 1.0]), "reads 1.00 m/s^2 on median"),  # in g
+        (np.array([0.0, 0.0, 9.81]), "always reads the same"),
+    ],
+)
+def test_readings_that_can_hardly_be_are_told(force: np.ndarray, told: str) -> None:
+    times_s = np.arange(50) / 100
+    sound = np.column_stack([np.sin(times_s), 0 * times_s, 9.81 + 0 * times_s])
+    take = Take(
+        {
+            "left_wrist": SensorRecord(times_s, np.tile(force, (50, 1))),
+            "right_wrist": SensorRecord(times_s, sound),
+        }
+    )
+    (line,) = suspicions(take)
+    assert line.startswith("left_wrist")
+    assert told in line

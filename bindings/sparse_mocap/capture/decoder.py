@@ -11,6 +11,10 @@ from .config import CaptureConfig, LinkConfig
 from .drivers import keep_alive_commands, make_parser, parsed, site_order, start_commands
 from .sample_log import Samples
 
+IDLE_S = 0.2
+"""A port without a byte for this long after it was opened was not opened amid a message: devices
+send a message in one go, adapters hold bytes back for some 20 ms."""
+
 
 @dataclass
 class Sensor:
@@ -31,6 +35,8 @@ class Decoded:
 
     samples: Samples
     replies: tuple[bytes, ...] = ()
+    has_news: bool = False
+    """A sensor was met or named anew."""
 
 
 class Decoder:
@@ -41,12 +47,19 @@ class Decoder:
         self.sensors: list[Sensor] = []
         self._links = [_LinkDecoder(link) for link in config.links]
 
-    def connected(self, link: int) -> tuple[bytes, ...]:
+    def connected(self, link: int, now_ns: int) -> tuple[bytes, ...]:
         """The link was opened anew; returns the commands that start its device."""
         for sensor in self.sensors:
             if sensor.link == link:
                 sensor.last_counter = -1
-        return self._links[link].connected()
+        return self._links[link].connected(now_ns)
+
+    def interrupted(self) -> None:
+        """What comes next is not what followed."""
+        for of_link in self._links:
+            of_link.parser.interrupt()
+        for sensor in self.sensors:
+            sensor.last_counter = -1
 
     def keep_alive(self, link: int) -> tuple[bytes, ...]:
         """What the link's device wants to hear every second."""
@@ -55,13 +68,14 @@ class Decoder:
     def arrived(self, link: int, arrival_ns: int, data: bytes, sender: str = "") -> Decoded:
         """Decodes the next bytes of a link, or a datagram when there is a sender."""
         of_link = self._links[link]
+        of_link.heard(arrival_ns)
         samples = parsed(of_link.parser, data, sender)
-        self._name_sensors(link)
+        has_news = self._name_sensors(link)
         samples["arrival_ns"] = arrival_ns
         if len(samples):
             samples["sensor"] = np.asarray(of_link.numbers, np.uint16)[samples["sensor"]]
             self._count_missing(samples)
-        return Decoded(samples, of_link.replies())
+        return Decoded(samples, of_link.replies(), has_news)
 
     def counters(self, link: int) -> dict[str, int]:
         """What the link's parser counted."""
@@ -98,13 +112,19 @@ class Decoder:
         is_named = all(_site_in(sensor.name, known) for sensor in self.sensors)
         return not is_named and len(self._config.sites) < len(self.sensors)
 
-    def _name_sensors(self, link: int) -> None:
+    def _name_sensors(self, link: int) -> bool:
+        """Returns whether anything is new."""
         of_link = self._links[link]
-        for local, name in enumerate(of_link.parser.sensor_names):
+        names = of_link.parser.sensor_names
+        if names == of_link.names:
+            return False
+        of_link.names = names
+        for local, name in enumerate(names):
             if local == len(of_link.numbers):
                 of_link.numbers.append(len(self.sensors))
                 self.sensors.append(Sensor(link, local, name))
             self.sensors[of_link.numbers[local]].name = name
+        return True
 
     def _count_missing(self, samples: Samples) -> None:
         for number, counter in zip(
@@ -127,13 +147,22 @@ class _LinkDecoder:
         self.config = config
         self.parser = make_parser(config.driver, config.options)
         self.numbers: list[int] = []
+        self.names: list[str] = []
         self._num_resets = 0
+        self._opened_ns: int | None = None
+        """Until the first byte comes."""
         self._commands = start_commands(config.driver, config.options)
         self.keep_alive = keep_alive_commands(config.driver, config.options)
 
-    def connected(self) -> tuple[bytes, ...]:
+    def connected(self, now_ns: int) -> tuple[bytes, ...]:
         self.parser.reset()
+        self._opened_ns = now_ns
         return self._commands
+
+    def heard(self, arrival_ns: int) -> None:
+        if self._opened_ns is not None and arrival_ns - self._opened_ns > IDLE_S * 1e9:
+            self.parser.begin_message()
+        self._opened_ns = None
 
     def replies(self) -> tuple[bytes, ...]:
         replies = tuple(self.parser.take_replies())

@@ -119,6 +119,10 @@ class Link:
                     return self._enter(State.FAILED, reason)
             except LogError as error:
                 return self._enter(State.FAILED, str(error))
+            except Exception as error:
+                # Nobody waits for this thread: what it does not tell is never known.
+                self._enter(State.FAILED, f"{self.config.port}: {error!r}")
+                raise
             if not self._stop.is_set():
                 self._enter(State.RECONNECTING, reason)
                 self._stop.wait(backoff_s)
@@ -221,6 +225,9 @@ def _fetch(port: Any, inbox: SimpleQueue[_Item | Exception], is_over: threading.
     try:
         while not is_over.is_set():
             data = port.read(max(1, min(port.in_waiting, LONGEST_READ)))
+            # A socket tells of one byte at most, however many wait.
+            while data and len(data) < LONGEST_READ and (waiting := port.in_waiting):
+                data += port.read(min(waiting, LONGEST_READ - len(data)))
             if data:
                 inbox.put(_Item(time.monotonic_ns(), data, getattr(port, "sender", "")))
             while inbox.qsize() > MOST_WAITING and not is_over.wait(0.01):

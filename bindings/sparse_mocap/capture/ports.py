@@ -116,8 +116,9 @@ def open_port(port: str, baud: int) -> Any:
         if port.startswith(SCHEME):
             return UdpPort(port, READ_TIMEOUT_S)
         return serial.serial_for_url(
-            port, baudrate=baud, timeout=READ_TIMEOUT_S, write_timeout=1.0, exclusive=True
-        )
+            port, baudrate=baud, timeout=READ_TIMEOUT_S, exclusive=True,
+            write_timeout=None if port.startswith("rfc2217://") else 1.0,  # it knows none
+        )  # fmt: skip
     except PORT_ERRORS as error:
         raise PortError(_told(port, error)) from error
 

@@ -11,6 +11,10 @@ A file of records behind the 8 bytes ``SMRAWLG1``. All numbers are little-endian
     payload                 bytes | u8 length of the sender's name, name, datagram | JSON, UTF-8
     u32      CRC-32         of everything after the first two bytes
 
+A log may go on in further files (``raw.1.log``, ...), so that the oldest can be given up while
+nothing is recorded. Each begins with what must be known to read it alone: the capture's event and,
+for every link, how its connection began; an event ``begun`` ends that.
+
 A record is handed to the operating system in one write, so that a killed capture loses nothing that
 it had received; the disk is synced about once a second, for the loss of power. What a crash tore at
 the end is no record (its length or checksum is wrong), and reading stops before it. Damage in the
@@ -22,6 +26,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import re
 import struct
 import zlib
 from collections.abc import Iterator
@@ -32,6 +37,8 @@ from typing import Any, BinaryIO
 
 MAGIC = b"SMRAWLG1"
 FILE_NAME = "raw.log"
+BEGUN = "begun"
+"""The event behind what a later file repeats of the earlier ones."""
 
 _BEGIN = b"\xf5\x4c"
 _HEAD = struct.Struct("<BBIq")
@@ -62,6 +69,10 @@ class Record:
         value = json.loads(self.payload)
         return value if isinstance(value, dict) else {}
 
+    def is_event(self, name: str) -> bool:
+        """Whether it is an event of this name."""
+        return self.kind is Kind.EVENT and self.event.get("event") == name
+
     @property
     def datagram(self) -> tuple[str, bytes]:
         """Sender and content of a datagram."""
@@ -69,35 +80,47 @@ class Record:
         return self.payload[1:end].decode("utf-8", "replace"), self.payload[end:]
 
 
-class RawLogWriter:
-    """Appends records to a new log; each is one write to the operating system."""
+def sent_by(sender: str, datagram: bytes) -> bytes:
+    """The payload of a datagram's record."""
+    name = sender.encode()[:255]
+    return bytes([len(name)]) + name + datagram
 
-    def __init__(self, folder: Path) -> None:
-        self._file = open(folder / FILE_NAME, "xb", buffering=0)  # noqa: SIM115
+
+def log_path(folder: Path, number: int) -> Path:
+    """A log's file; they are numbered from 0."""
+    return folder / (f"raw.{number}.log" if number else FILE_NAME)
+
+
+class RawLogWriter:
+    """Appends records to a new file of a log; each is one write to the operating system."""
+
+    def __init__(self, folder: Path, number: int = 0) -> None:
+        self.number = number
+        self._file = open(log_path(folder, number), "xb", buffering=0)  # noqa: SIM115
         self._file.write(MAGIC)
         self.num_bytes = len(MAGIC)
 
-    def append(self, kind: Kind, link: int, arrival_ns: int, payload: bytes) -> None:
+    def append(self, record: Record) -> None:
         """Appends a record. Raises OSError, such as for a full disk."""
-        body = _HEAD.pack(kind, link, len(payload), arrival_ns) + payload
-        record = memoryview(_BEGIN + body + _CHECK.pack(zlib.crc32(body)))
-        while len(record):
-            written = self._file.write(record)
+        head = _HEAD.pack(record.kind, record.link, len(record.payload), record.arrival_ns)
+        body = head + record.payload
+        rest = memoryview(_BEGIN + body + _CHECK.pack(zlib.crc32(body)))
+        while len(rest):
+            written = self._file.write(rest)
             self.num_bytes += written
-            record = record[written:]
+            rest = rest[written:]
 
     def append_bytes(self, link: int, arrival_ns: int, data: bytes) -> None:
         """Appends bytes of a link."""
-        self.append(Kind.BYTES, link, arrival_ns, data)
+        self.append(Record(Kind.BYTES, link, arrival_ns, data))
 
     def append_event(self, link: int, arrival_ns: int, event: dict[str, Any]) -> None:
         """Appends an event."""
-        self.append(Kind.EVENT, link, arrival_ns, json.dumps(event).encode())
+        self.append(Record(Kind.EVENT, link, arrival_ns, json.dumps(event).encode()))
 
     def append_datagram(self, link: int, arrival_ns: int, sender: str, datagram: bytes) -> None:
         """Appends a datagram and who sent it."""
-        name = sender.encode()[:255]
-        self.append(Kind.DATAGRAM, link, arrival_ns, bytes([len(name)]) + name + datagram)
+        self.append(Record(Kind.DATAGRAM, link, arrival_ns, sent_by(sender, datagram)))
 
     def sync(self) -> None:
         """Waits until the disk has what was appended."""
@@ -108,6 +131,30 @@ class RawLogWriter:
         if not self._file.closed:
             self.sync()
             self._file.close()
+
+
+def read_log(folder: Path) -> Iterator[Record]:
+    """Gives the records of all the files of a log that are left, in order.
+
+    What a file repeats is left out where the file before it was read. Raises as read_records does.
+    """
+    found = [re.fullmatch(r"raw\.(\d+)\.log", path.name) for path in folder.glob("raw.*.log")]
+    numbers = sorted(int(match[1]) for match in found if match)
+    last = -2
+    for number in (0, *numbers):
+        path = log_path(folder, number)
+        is_repeated = number == last + 1
+        try:
+            if number and path.stat().st_size < len(MAGIC):  # torn at its very begin
+                continue
+            for record in read_records(path):
+                last = number
+                if not is_repeated:
+                    yield record
+                is_repeated = is_repeated and not record.is_event(BEGUN)
+        except FileNotFoundError:  # given up, perhaps just now
+            if not numbers:
+                raise
 
 
 def read_records(path: Path) -> Iterator[Record]:

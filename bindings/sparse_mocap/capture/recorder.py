@@ -6,6 +6,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,8 +16,9 @@ import numpy as np
 from .config import CaptureConfig
 from .decoder import Decoder
 from .errors import LogError
+from .kept_log import KeptLog
 from .link import Arrived, Link, State
-from .raw_log import RawLogWriter
+from .raw_log import Kind, Record, sent_by
 from .sample_log import SampleLogWriter, Samples
 
 SILENT_S = 0.1
@@ -41,7 +43,9 @@ class Recorder:
 
     def __init__(self, folder: Path, config: CaptureConfig) -> None:
         self.folder, self.config = folder, config
-        self._raw = RawLogWriter(folder)
+        self._raw = KeptLog(
+            folder, {"event": "capture", "config": config.as_json(), "unix_s": time.time()}
+        )
         self._log = SampleLogWriter(folder)
         self._lock = threading.Lock()
         self._decoder = Decoder(config)
@@ -54,7 +58,6 @@ class Recorder:
         self.num_recordings = 0
         self.may_be_removed = config.is_temporary
         """Whether nothing in the folder would be missed: nothing was recorded, or it is kept."""
-        self._event(0, {"event": "capture", "config": config.as_json(), "unix_s": time.time()})
         self.links = [Link(index, link, self) for index, link in enumerate(config.links)]
 
     def start(self) -> None:
@@ -76,8 +79,8 @@ class Recorder:
     def connected(self, link: int, port: str) -> tuple[bytes, ...]:
         """A link's port was opened."""
         with self._lock:
-            self._event(link, {"event": "connected", "port": port})
-            return self._decoder.connected(link)
+            now_ns = self._event(link, {"event": "connected", "port": port})
+            return self._decoder.connected(link, now_ns)
 
     def keep_alive(self, link: int) -> tuple[bytes, ...]:
         """What the link's device wants to hear every second."""
@@ -93,14 +96,15 @@ class Recorder:
 
     def arrived(self, link: int, arrival_ns: int, data: bytes, sender: str = "") -> Arrived:
         """Bytes arrived: they are kept before anything else is done with them."""
+        kind = Kind.DATAGRAM if sender else Kind.BYTES
+        record = Record(kind, link, arrival_ns, sent_by(sender, data) if sender else data)
         with self._lock:
             try:
-                if sender:
-                    self._raw.append_datagram(link, arrival_ns, sender, data)
-                else:
-                    self._raw.append_bytes(link, arrival_ns, data)
+                self._raw.append(record)
                 decoded = self._decoder.arrived(link, arrival_ns, data, sender)
                 self._log.append(decoded.samples)
+                has_samples = len(decoded.samples) > 0
+                self._raw.learnt(record, sender, has_samples=has_samples, has_news=decoded.has_news)
             except OSError as error:
                 raise self._log_error(error) from error
             self._count(decoded.samples)
@@ -108,16 +112,26 @@ class Recorder:
         return Arrived(len(decoded.samples), decoded.replies)
 
     def tick(self) -> None:
-        """Is called about twice a second: syncs the disk, ends recordings, counts rates."""
+        """Is called about twice a second.
+
+        Syncs the disk, ends recordings, counts rates, gives up what nobody records.
+        """
+        full = None
         with self._lock:
             recording = self.recording
             if recording and recording.until_ns and time.monotonic_ns() >= recording.until_ns:
                 self._stop_recording()
             self._rates.append((time.monotonic(), dict(self._num_of)))
-        try:
-            self._raw.sync()  # outside the lock: a slow disk must not hold up the links
-        except (OSError, ValueError):
-            return
+            if self.recording is None:
+                with suppress(OSError):  # a full disk is told by the link that meets it
+                    full = self._raw.go_on()
+                self._log.give_up()
+        # Outside the lock: a slow disk must not hold up the links.
+        with suppress(OSError, ValueError):
+            self._raw.sync()
+        if full is not None:
+            with suppress(OSError):
+                full.close()
 
     def start_recording(self, seconds: float | None) -> dict[str, Any]:
         """Records for so long from now, or until it is stopped; a recording that runs goes on."""
@@ -125,6 +139,7 @@ class Recorder:
             now = time.monotonic_ns()
             if self.recording is None:
                 self.recording = Recording(self.num_recordings, now, None, self._log.num_samples)
+                self._raw.keep()
                 self._event(0, {"event": "recording", "number": self.num_recordings})
                 self.num_recordings += 1
                 self.may_be_removed = False
@@ -153,9 +168,9 @@ class Recorder:
                 ],
             }
 
-    def _event(self, link: int, event: dict[str, Any]) -> None:
+    def _event(self, link: int, event: dict[str, Any]) -> int:
         try:
-            self._raw.append_event(link, time.monotonic_ns(), event)
+            return self._raw.append_event(link, event)
         except OSError as error:
             raise self._log_error(error) from error
 
@@ -165,6 +180,7 @@ class Recorder:
     def _stop_recording(self) -> None:
         if self.recording is not None:
             self._event(0, {"event": "recording_end", "number": self.recording.number})
+            self._raw.release()
             self.recording = None
 
     def _recording_json(self) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from .clocks import LARGEST_DRIFT, host_times
 from .config import CaptureConfig
 from .decoder import Decoder
 from .errors import RecordingError
-from .raw_log import FILE_NAME, Kind, Record, read_records
+from .raw_log import BEGUN, FILE_NAME, Kind, Record, read_log
 from .sample_log import SAMPLE, Samples
 
 Floats = NDArray[np.float64]
@@ -80,6 +80,8 @@ class _Replay:
     """For each sample the how manieth connection of its link it came by."""
     begins_ns: list[int] = field(default_factory=list)
     ends_ns: dict[int, int] = field(default_factory=dict)
+    is_repeated: bool = False
+    """What comes tells how the connections began; its samples belong to no recording."""
     _connections: dict[int, int] = field(default_factory=dict)
 
     def take_up(self, record: Record) -> None:
@@ -89,14 +91,21 @@ class _Replay:
         is_datagram = record.kind is Kind.DATAGRAM
         sender, data = record.datagram if is_datagram else ("", record.payload)
         samples = self.decoder.arrived(record.link, record.arrival_ns, data, sender).samples
+        if self.is_repeated:
+            return
         self.parts.append(samples)
         self.epochs.append(np.full(len(samples), self._connections.get(record.link, 0)))
 
     def _take_up_event(self, record: Record) -> None:
         event = record.event
         what = event.get("event")
-        if what == "connected":
-            self.decoder.connected(record.link)
+        if what == "capture":
+            self.is_repeated = bool(event.get("is_later"))
+        elif what == BEGUN:
+            self.is_repeated = False
+            self.decoder.interrupted()
+        elif what == "connected":
+            self.decoder.connected(record.link, record.arrival_ns)
             self._connections[record.link] = self._connections.get(record.link, 0) + 1
         elif what == "recording":
             self.begins_ns.append(record.arrival_ns)
@@ -146,13 +155,13 @@ def recording_to_take(
 def _replayed(folder: Path, sites: tuple[str, ...]) -> _Replay:
     replay: _Replay | None = None
     try:
-        for record in read_records(folder / FILE_NAME):
-            if replay is not None:
-                replay.take_up(record)
-            elif record.kind is Kind.EVENT and record.event.get("event") == "capture":
+        for record in read_log(folder):
+            if replay is None and record.is_event("capture"):
                 config = CaptureConfig.from_json(record.event["config"])
                 config = replace(config, sites=sites or config.sites)
                 replay = _Replay(config, Decoder(config))
+            if replay is not None:
+                replay.take_up(record)
     except ValueError as error:
         raise RecordingError(str(error)) from error
     if replay is None:

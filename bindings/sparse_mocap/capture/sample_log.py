@@ -2,13 +2,16 @@
 """The sample log: every decoded sample, in a file that any number of readers follow.
 
 Behind the 8 bytes ``SMSAMPL1`` stand records of SAMPLE, little-endian and all of one size, so that
-a sample's number is its place in the file and a torn last record is cut by counting. A reader that
-was stalled goes on where it was: nothing is dropped for its sake.
+a sample's number is its place and a torn last record is cut by counting. After PER_FILE samples the
+log goes on in the next file (``samples.1.bin``, ...). A reader that was stalled goes on where it
+was; while nothing is recorded, though, the oldest files are given up.
 """
 
 from __future__ import annotations
 
 import os
+import re
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +19,10 @@ from numpy.typing import NDArray
 
 MAGIC = b"SMSAMPL1"
 FILE_NAME = "samples.bin"
+PER_FILE = 1 << 18
+"""Samples in a file: three minutes and a half of six sensors at 200 Hz, 19 MB."""
+MOST_SPARE = 2
+"""So many full files are kept of what nobody records."""
 
 SAMPLE = np.dtype(
     [
@@ -34,20 +41,38 @@ SAMPLE = np.dtype(
 Samples = NDArray[np.void]
 
 
+def log_path(folder: Path, number: int) -> Path:
+    """A log's file; they are numbered from 0."""
+    return folder / (f"samples.{number}.bin" if number else FILE_NAME)
+
+
 class SampleLogWriter:
     """Appends samples to a new log."""
 
     def __init__(self, folder: Path) -> None:
-        self._file = open(folder / FILE_NAME, "xb", buffering=0)  # noqa: SIM115
-        self._file.write(MAGIC)
+        self._folder = folder
         self.num_samples = 0
+        self._oldest = 0
+        self._begin_file(0)
 
     def append(self, samples: Samples) -> None:
         """Appends samples. Raises OSError, such as for a full disk."""
-        rest = memoryview(samples.tobytes())
-        while len(rest):
-            rest = rest[self._file.write(rest) :]
-        self.num_samples += len(samples)
+        while len(samples):
+            number, at = divmod(self.num_samples, PER_FILE)
+            if number > self._number:
+                self._begin_file(number)
+            part, samples = samples[: PER_FILE - at], samples[PER_FILE - at :]
+            rest = memoryview(part.tobytes())
+            while len(rest):
+                rest = rest[self._file.write(rest) :]
+            self.num_samples += len(part)
+
+    def give_up(self) -> None:
+        """Removes what is older than the newest full files."""
+        while self._oldest < self._number - MOST_SPARE:
+            with suppress(OSError):  # somebody reads it, where that forbids to remove it
+                log_path(self._folder, self._oldest).unlink()
+            self._oldest += 1
 
     def close(self) -> None:
         """Syncs and closes."""
@@ -55,37 +80,85 @@ class SampleLogWriter:
             os.fsync(self._file.fileno())
             self._file.close()
 
+    def _begin_file(self, number: int) -> None:
+        path = log_path(self._folder, number)
+        file = open(path, "xb", buffering=0)  # noqa: SIM115
+        file.write(MAGIC)
+        if number:
+            self._file.close()
+        self._file, self._number = file, number
+
 
 class SampleLogReader:
     """Follows a log from a sample on."""
 
     def __init__(self, folder: Path, position: int = 0) -> None:
-        self._file = open(folder / FILE_NAME, "rb", buffering=0)  # noqa: SIM115
-        if self._file.read(len(MAGIC)) != MAGIC:
-            self._file.close()
-            raise ValueError(f"{folder / FILE_NAME}: is no sample log of a capture")
+        self._folder = folder
+        self._number = -1
         self.position = position
+        self._open(min(self._numbers(), default=0))
 
     @property
     def num_samples(self) -> int:
-        """How many whole samples are in the file by now."""
-        return (os.fstat(self._file.fileno()).st_size - len(MAGIC)) // SAMPLE.itemsize
+        """How many whole samples there are by now."""
+        number = max(self._numbers(), default=0)
+        size = log_path(self._folder, number).stat().st_size - len(MAGIC)
+        return number * PER_FILE + max(size, 0) // SAMPLE.itemsize
 
     def seek_end(self) -> None:
         """Goes on with what comes from now on."""
         self.position = self.num_samples
 
     def read(self, most: int = 100_000) -> Samples:
-        """Returns the next samples, (N,) of SAMPLE, none when there are no more yet."""
-        wanted = min(self.num_samples - self.position, most)
-        if wanted <= 0:
-            return np.empty(0, SAMPLE)
-        self._file.seek(len(MAGIC) + self.position * SAMPLE.itemsize)
-        data = self._file.read(wanted * SAMPLE.itemsize)
-        samples = np.frombuffer(data[: len(data) // SAMPLE.itemsize * SAMPLE.itemsize], SAMPLE)
-        self.position += len(samples)
-        return samples
+        """Returns the next samples, (N,) of SAMPLE, none when there are no more yet.
+
+        Those that were given up meanwhile are passed over.
+        """
+        parts = [np.empty(0, SAMPLE)]
+        while most > 0 and self._is_there():
+            at = self.position % PER_FILE
+            self._file.seek(len(MAGIC) + at * SAMPLE.itemsize)
+            data = self._file.read(min(most, PER_FILE - at) * SAMPLE.itemsize)
+            count = len(data) // SAMPLE.itemsize
+            if not count:
+                break
+            parts.append(np.frombuffer(data, SAMPLE, count))
+            self.position += count
+            most -= count
+        return np.concatenate(parts)
 
     def close(self) -> None:
         """Closes the file."""
         self._file.close()
+
+    def _is_there(self) -> bool:
+        """Opens the file of the next sample, or of the oldest that is left when it was given up."""
+        number = self.position // PER_FILE
+        if number == self._number:
+            return True
+        numbers = self._numbers()
+        if not numbers or number > max(numbers):
+            return False
+        try:
+            self._open(number if number in numbers else min(numbers))
+        except (FileNotFoundError, ValueError):  # given up, or begun, just now
+            return False
+        self.position = max(self.position, self._number * PER_FILE)
+        return self._number >= number
+
+    def _numbers(self) -> list[int]:
+        found = [
+            re.fullmatch(r"samples(?:\.(\d+))?\.bin", path.name)
+            for path in self._folder.glob("samples*.bin")
+        ]
+        return [int(match[1] or 0) for match in found if match]
+
+    def _open(self, number: int) -> None:
+        path = log_path(self._folder, number)
+        file = open(path, "rb", buffering=0)  # noqa: SIM115
+        if file.read(len(MAGIC)) != MAGIC:
+            file.close()
+            raise ValueError(f"{path}: is no sample log of a capture")
+        if self._number >= 0:
+            self._file.close()
+        self._file, self._number = file, number

@@ -10,6 +10,8 @@
 namespace sparse_mocap {
 namespace {
 
+constexpr double kTogether_s = 1e-3;
+
 struct Point {
   double x = 0.0, y = 0.0;
 };
@@ -43,30 +45,54 @@ double height_below(const std::vector<Point>& hull, double slope, double x) {
   return height;
 }
 
-// The mean of all slopes that the points allow, each as likely as exponential lateness makes it.
-// The likeliest slope rests on two points alone; the mean is half as far off when few are prompt.
-double mean_slope(const std::vector<Point>& points, const std::vector<Point>& hull, double centre,
-                  double likeliest, double limit) {
-  const double intercept = height_below(hull, likeliest, 0.0);
-  std::vector<double> lateness;
-  for (const Point& p : points) lateness.push_back(p.y - intercept - likeliest * p.x);
-  // How far apart the promptest arrivals are: only these touch a line.
-  const std::size_t num_promptest = lateness.size() / 10;
-  const auto tenth = lateness.begin() + static_cast<std::ptrdiff_t>(num_promptest);
-  std::nth_element(lateness.begin(), tenth, lateness.end());
-  const double unit = std::max(*tenth / (1.0 + static_cast<double>(num_promptest)), 1e-9);
+struct Line {
+  double height = 0.0;  // at the centre
+  double slope = 0.0;
+};
+
+// How far apart the lowest tenth of the heights are: only these touch a line.
+double spacing_of_lowest(std::vector<double>& heights) {
+  const auto tenth = static_cast<std::ptrdiff_t>(heights.size() / 10);
+  std::nth_element(heights.begin(), heights.begin() + tenth, heights.end());
+  const double lowest = *std::min_element(heights.begin(), heights.begin() + tenth + 1);
+  return std::max(
+      (heights[static_cast<std::size_t>(tenth)] - lowest) / static_cast<double>(1 + tenth), 1e-9);
+}
+
+// The mean of all lines that the points allow, each as likely as it makes the lateness: near an
+// edge arrivals are spread evenly, so that a line which leaves room for one more below them all is
+// less likely by e (Pitman's estimator; the likeliest line rests on two points alone and is a third
+// further off). The line above all arrivals tells the slope too where lateness ends as sharply as
+// it begins, as by a radio's slots; its word counts half, for delays have a largest value by habit
+// only.
+Line mean_line(const std::vector<Point>& points, double centre, double limit) {
+  std::vector<Point> turned;
+  for (const Point& p : points) turned.push_back({p.x, -p.y});
+  const std::vector<Point> below = lower_hull(points), above = lower_hull(turned);
+  const double likeliest = std::clamp(slope_at(below, centre), -limit, limit);
+  std::vector<double> heights, depths;
+  for (const Point& p : points) heights.push_back(p.y - likeliest * p.x);
+  for (const double height : heights) depths.push_back(-height);
+  const double unit = spacing_of_lowest(heights);
+  const double unit_above = std::max(spacing_of_lowest(depths), unit);
   const double reach = 40.0 * unit / (points.back().x - points.front().x);
-  const double top = height_below(hull, likeliest, centre);
-  double weights = 0.0, sum = 0.0;
-  constexpr int kSteps = 200;
+  const double height = height_below(below, likeliest, centre);
+  const double depth = height_below(above, -likeliest, centre);
+  double weights = 0.0;
+  Line sum;
+  constexpr int kSteps = 80;
   for (int step = -kSteps; step <= kSteps; ++step) {
     const double slope = likeliest + reach * step / kSteps;
     if (std::abs(slope) > limit) continue;
-    const double weight = std::exp((height_below(hull, slope, centre) - top) / unit);
+    const double own_height = height_below(below, slope, centre);
+    const double own_depth = height_below(above, -slope, centre);
+    const double weight =
+        std::exp((own_height - height) / unit + 0.5 * (own_depth - depth) / unit_above);
     weights += weight;
-    sum += weight * slope;
+    sum.height += weight * own_height;
+    sum.slope += weight * slope;
   }
-  return weights > 0.0 ? sum / weights : likeliest;
+  return {sum.height / weights - unit, sum.slope / weights};
 }
 
 }  // namespace
@@ -135,17 +161,19 @@ void ClockModel::fit() {
   // Against device time itself, so that slopes are drifts.
   std::vector<Point> points;
   double centre_s = 0.0;
-  for (const Bucket& bucket : buckets_) {
+  for (std::size_t i = 0; i < buckets_.size(); ++i) {
+    const Bucket& bucket = buckets_[i];
+    // What came together with a later sample says nothing that the later one does not.
+    if (i + 1 < buckets_.size() && buckets_[i + 1].arrival_s < bucket.arrival_s + kTogether_s)
+      continue;
     points.push_back({bucket.device_s, bucket.arrival_s - bucket.device_s});
-    centre_s += bucket.device_s / static_cast<double>(buckets_.size());
+    centre_s += bucket.device_s;
   }
-  const std::vector<Point> hull = lower_hull(points);
-  const double limit = settings_.largest_drift;
-  if (points.size() >= 2) {
-    const double likeliest = std::clamp(slope_at(hull, centre_s), -limit, limit);
-    drift_ = mean_slope(points, hull, centre_s, likeliest, limit);
-  }
-  intercept_s_ = height_below(hull, drift_, 0.0);
+  centre_s /= static_cast<double>(points.size());
+  Line line{points.front().y, drift_};
+  if (points.size() >= 2) line = mean_line(points, centre_s, settings_.largest_drift);
+  drift_ = line.slope;
+  intercept_s_ = line.height - line.slope * centre_s;
 }
 
 double ClockModel::host_time_s(double device_s) const {

@@ -16,9 +16,9 @@ struct ClockSettings {
 // Maps a device's clock to the host's monotonic one.
 //
 // Samples arrive only ever late: by buffering, by bursts, by radio. So the line host = offset +
-// rate * device lies below all arrivals and touches them: its rate is the mean of all that allow
-// this, weighted by how likely they make the lateness, and within largest_drift of 1. What all
-// arrivals are late by at least cannot be seen and stays in the offset. A device without a clock is
+// rate * device lies below all arrivals: it is the mean of all that do, weighted by how likely they
+// make the lateness, its rate within largest_drift of 1. What all arrivals are late by at least
+// cannot be seen and stays in the offset. A device without a clock is
 // one whose time is its sample counter over its nominal rate; allow it more drift.
 class ClockModel {
  public:

@@ -26,6 +26,10 @@ constexpr std::size_t kHeader = 12, kLongestDatagram = 1472, kMostTrackers = 32;
 constexpr std::uint8_t kNormalRotation = 1;
 constexpr std::string_view kHello = "Hey OVR =D 5";
 
+bool is_known(std::int32_t type) {
+  return (type >= 0 && type <= kHighestType) || type == kBundle || type == kCompactBundle;
+}
+
 Vec3 read_floats(const std::uint8_t* at) {
   return {read_big<float>(at), read_big<float>(at + 4), read_big<float>(at + 8)};
 }
@@ -88,10 +92,16 @@ class Encoder : public StreamEncoder {
 Parser::Parser(const Options&) : scanner_(kLongestDatagram + 2) {}
 
 void Parser::parse(ByteView bytes) {
+  // Amid a datagram any two bytes may look like a length: a known type and a number that is not
+  // beyond what a device ever counts to must follow, too.
   const auto inspect = [](ByteView head) {
     if (head.size() < 2) return Head::more();
     const std::size_t length = read_big<std::uint16_t>(head.data());
     if (length < 4 || length > kLongestDatagram) return Head::skip();
+    if (head.size() < 6) return Head::more();
+    if (!is_known(read_big<std::int32_t>(&head[2]))) return Head::skip();
+    if (length >= kHeader && head.size() < 10) return Head::more();
+    if (length >= kHeader && read_big<std::uint32_t>(&head[6]) != 0) return Head::skip();
     return head.size() < length + 2 ? Head::more() : Head::frame(length + 2);
   };
   scanner_.feed(bytes, all_counts(), inspect,
@@ -115,7 +125,7 @@ void Parser::parse_datagram(ByteView datagram, std::string_view sender) {
   const auto type = read_big<std::int32_t>(datagram.data());
   const auto number = read_big<std::int64_t>(&datagram[4]);
   const bool is_bundle = type == kBundle || type == kCompactBundle;
-  if (type < 0 || number < 0 || (type > kHighestType && !is_bundle)) {
+  if (!is_known(type) || number < 0) {
     ++count(Count::unknown_types);
     return;
   }
@@ -245,7 +255,6 @@ void Parser::take_acceleration(int sensor, const Vec3& linear_acceleration, Trac
   tracker.sensors[sensor] = index;
   Sample sample;
   sample.sensor = index;
-  sample.counter = tracker.last_number.value_or(-1);
   sample.orientation = orientation->second;
   sample.flags = tracker.next_flags;
   tracker.next_flags = 0;

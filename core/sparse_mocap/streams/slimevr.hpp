@@ -20,6 +20,8 @@ class Parser : public StreamParser {
  public:
   explicit Parser(const Options& options);
 
+  void interrupt() override { scanner_.reset(); }
+
   static std::vector<OptionSpec> options();
   static std::vector<Bytes> keep_alive(const Options& options);
   static std::unique_ptr<StreamEncoder> make_encoder(const Options& options,

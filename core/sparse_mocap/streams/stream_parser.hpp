@@ -36,6 +36,13 @@ class StreamParser {
   // configuration. Sensors keep their indices, counters go on.
   void reset();
 
+  // After reset(): the wire was idle for so long that what comes first begins a message.
+  virtual void begin_message() {}
+
+  // Bytes are missing before what comes next: forgets the message that was begun, and keeps what is
+  // known of the device.
+  virtual void interrupt() = 0;
+
   const Counters& counters() const { return counters_; }
   // In the order in which the sensors were met. A name may change when the device tells its own.
   const std::vector<std::string>& sensor_names() const { return sensor_names_; }

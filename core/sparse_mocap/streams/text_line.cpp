@@ -16,7 +16,6 @@
 namespace sparse_mocap::streams::text_line {
 namespace {
 
-constexpr std::size_t kNumColumns = static_cast<std::size_t>(Column::skip) + 1;
 constexpr std::array<std::string_view, kNumColumns> kNames{
     "time", "sensor", "counter", "ax", "ay", "az", "gx", "gy",  "gz",
     "mx",   "my",     "mz",      "qw", "qx", "qy", "qz", "skip"};
@@ -43,18 +42,18 @@ bool is_needed(const std::vector<Column>& columns) {
   return has(columns, {Column::ax, Column::ay, Column::az});
 }
 
-double value_of(const std::array<double, kNumColumns>& values, Column column) {
+double value_of(const ColumnValues& values, Column column) {
   return values[static_cast<std::size_t>(column)];
 }
 
-Vec3 vector_of(const std::array<double, kNumColumns>& values, Column first) {
+Vec3 vector_of(const ColumnValues& values, Column first) {
   const auto at = static_cast<std::size_t>(first);
   return {values[at], values[at + 1], values[at + 2]};
 }
 
 // Whether every field is as its column demands; values of absent columns are NaN.
 bool read_fields(const std::vector<std::string_view>& fields, const std::vector<Column>& columns,
-                 std::array<double, kNumColumns>& values, std::string_view& name) {
+                 ColumnValues& values, std::string_view& name) {
   values.fill(kAbsent);
   if (fields.size() != columns.size()) return false;
   for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -70,7 +69,7 @@ bool read_fields(const std::vector<std::string_view>& fields, const std::vector<
   return true;
 }
 
-Sample sample_of(const std::array<double, kNumColumns>& values, const Profile& profile) {
+Sample sample_of(const ColumnValues& values, const Profile& profile) {
   Sample sample;
   const Vec3 force = vector_of(values, Column::ax) * profile.force_scale;
   sample.angular_velocity = vector_of(values, Column::gx) * profile.turn_scale;
@@ -202,9 +201,14 @@ void Parser::parse(ByteView bytes) {
   lines_.feed(bytes, all_counts(), [&](ByteView line) { take(text_of(line)); });
 }
 
-void Parser::restart() {
+void Parser::interrupt() {
   lines_.reset();
+  first_line_.clear();
   is_first_line_ = skips_first_line_;
+}
+
+void Parser::restart() {
+  interrupt();
   columns_ = profile_.columns;
   for (auto& [name, device] : devices_) {
     const int sensor = device.sensor;
@@ -215,21 +219,62 @@ void Parser::restart() {
 }
 
 void Parser::take(std::string_view line) {
-  if (std::exchange(is_first_line_, false) && !columns_.empty()) return;
+  if (std::exchange(is_first_line_, false) && !columns_.empty() && !is_surely_whole(line)) {
+    first_line_ = line;
+    return;
+  }
   if (line.empty()) return;
-  if (!line.starts_with(profile_.prefix) || !is_printable(line)) {
+  if (columns_.empty() && line.starts_with(profile_.prefix) && is_printable(line))
+    return take_header(split_fields(line.substr(profile_.prefix.size()), profile_.separator));
+  ColumnValues values;
+  std::string_view name;
+  if (!read(line, values, name)) {
     ++count(Count::malformed);
     return;
   }
-  line.remove_prefix(profile_.prefix.size());
-  const auto fields = split_fields(line, profile_.separator);
-  if (columns_.empty()) return take_header(fields);
-  std::array<double, kNumColumns> values;
-  std::string_view name = profile_.name;
-  if (!read_fields(fields, columns_, values, name)) {
-    ++count(Count::malformed);
-    return;
-  }
+  if (!first_line_.empty()) judge_first_line(line, values, name);
+  take_values(values, name);
+}
+
+bool Parser::read(std::string_view line, ColumnValues& values, std::string_view& name) const {
+  if (!line.starts_with(profile_.prefix) || !is_printable(line)) return false;
+  name = profile_.name;
+  return read_fields(split_fields(line.substr(profile_.prefix.size()), profile_.separator),
+                     columns_, values, name);
+}
+
+// A prefix that no number holds stands nowhere else in a line of numbers; and of a first column
+// that means nothing nothing is missed.
+bool Parser::is_surely_whole(std::string_view line) const {
+  const bool has_texts = std::ranges::any_of(
+      columns_, [](Column c) { return c == Column::sensor || c == Column::skip; });
+  if (profile_.prefix.empty()) return columns_.front() == Column::skip;
+  return !has_texts && line.starts_with(profile_.prefix) &&
+         profile_.prefix.find_first_not_of(" \t+-.,;eE0123456789") != std::string::npos;
+}
+
+// By the next line of the same sensor. A number without its first digits is too small by at least
+// 10^k, k being how many digits are left of it: more than itself, and never what a counter skips.
+void Parser::judge_first_line(std::string_view next_line, const ColumnValues& next,
+                              std::string_view name) {
+  ColumnValues first;
+  std::string_view first_name;
+  const bool is_line = read(first_line_, first, first_name);
+  if (is_line && first_name != name) return;
+  const auto has_point = [&](std::string_view line) {
+    return split_fields(line.substr(profile_.prefix.size()), profile_.separator)[0].find('.') !=
+           std::string_view::npos;
+  };
+  const auto column = columns_.front();
+  const double step = value_of(next, column) - value_of(first, column);
+  const bool counts_on = (column == Column::counter && step == 1.0) ||
+                         (column == Column::time && step >= 0.0 && step <= value_of(first, column));
+  if (is_line && counts_on && has_point(first_line_) == has_point(next_line))
+    take_values(first, first_name);
+  first_line_.clear();
+}
+
+void Parser::take_values(const ColumnValues& values, std::string_view name) {
   ++count(Count::frames);
   auto* device = device_of(name);
   if (device == nullptr) return;
@@ -321,7 +366,8 @@ std::vector<OptionSpec> Parser::options() {
       {"counts_per_degps", "131",
        "for raw: 131, 65.5, 32.8, 16.4 at +-250 to 2000 deg/s (MPU6050)"},
       {"time_unit", "us", "s, ms, us or ns; ms and us may wrap at 2^32"},
-      {"skip_first_line", "true", "true: the first line may be the end of one"},
+      {"skip_first_line", "true",
+       "true: the first line may be the end of one; it is taken only when it is sure to be whole"},
       {"start_text", "", "what is sent to a device that waits for a character"},
   };
 }

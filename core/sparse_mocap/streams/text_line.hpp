@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 
@@ -31,6 +32,11 @@ enum class Column {
   skip
 };
 
+inline constexpr std::size_t kNumColumns = static_cast<std::size_t>(Column::skip) + 1;
+
+// By column; NaN where a line has no such column.
+using ColumnValues = std::array<double, kNumColumns>;
+
 // How a device spells its lines and in which units; throws ConfigError for what cannot be.
 struct Profile {
   explicit Profile(const Options& options);
@@ -48,9 +54,16 @@ struct Profile {
 
 // One sample a line of text, as Arduino and ESP32 sketches print them. A line that is not exactly
 // as the profile says is dropped: text at start-up, half lines, a repeated header, nan and ovf.
+//
+// The first line after the port was opened may lack its begin and still look like one. It is taken
+// when it is sure to be whole: the wire was idle before it (begin_message), it begins with a prefix
+// that nothing else can look like, or the sensor's next line counts on from it.
 class Parser : public StreamParser {
  public:
   explicit Parser(const Options& options);
+
+  void begin_message() override { is_first_line_ = false; }
+  void interrupt() override;
 
   static std::vector<OptionSpec> options();
   static std::vector<Bytes> start_commands(const Options& options);
@@ -70,6 +83,11 @@ class Parser : public StreamParser {
   void parse(ByteView bytes) override;
   void restart() override;
   void take(std::string_view line);
+  bool read(std::string_view line, ColumnValues& values, std::string_view& name) const;
+  bool is_surely_whole(std::string_view line) const;
+  void judge_first_line(std::string_view next_line, const ColumnValues& next,
+                        std::string_view name);
+  void take_values(const ColumnValues& values, std::string_view name);
   void take_header(const std::vector<std::string_view>& fields);
   bool take_time(double value, Device& device, Sample& sample);
   bool take_counter(double value, Device& device, Sample& sample);
@@ -79,6 +97,7 @@ class Parser : public StreamParser {
   std::vector<Column> columns_;
   bool is_first_line_;
   bool skips_first_line_;
+  std::string first_line_;  // that may lack its begin; empty: none is kept
   LineSplitter lines_;
   std::map<std::string, Device, std::less<>> devices_;
 };

@@ -179,13 +179,17 @@ void Parser::parse(ByteView bytes) {
   scanner_.feed(bytes, all_counts(), inspect, [&](ByteView frame) { take(frame); });
 }
 
-void Parser::restart() {
+void Parser::interrupt() {
   scanner_.reset();
-  clock_ = TickClock(64, 1e-3);
   sample_ = Sample();
-  last_types_ = {};
   type_ = 0;
   is_repeated_ = is_finished_ = false;
+}
+
+void Parser::restart() {
+  interrupt();
+  clock_ = TickClock(64, 1e-3);
+  last_types_ = {};
   next_flags_ = kAfterReset;
 }
 
@@ -259,9 +263,13 @@ void BleParser::parse(ByteView bytes) {
       [&](ByteView frame) { take(frame); });
 }
 
-void BleParser::restart() {
+void BleParser::interrupt() {
   scanner_.reset();
   is_locked_ = false;
+}
+
+void BleParser::restart() {
+  interrupt();
   next_flags_ = kAfterReset;
 }
 

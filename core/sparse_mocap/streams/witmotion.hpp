@@ -18,6 +18,8 @@ class Parser : public StreamParser {
  public:
   explicit Parser(const Options& options);
 
+  void interrupt() override;
+
   static std::vector<OptionSpec> options();
   static std::vector<Bytes> start_commands(const Options& options);
   static std::unique_ptr<StreamEncoder> make_encoder(const Options& options,
@@ -48,6 +50,8 @@ class Parser : public StreamParser {
 class BleParser : public StreamParser {
  public:
   explicit BleParser(const Options& options);
+
+  void interrupt() override;
 
   static std::vector<OptionSpec> options();
   static std::vector<Bytes> start_commands(const Options& options);

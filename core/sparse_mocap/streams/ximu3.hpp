@@ -19,6 +19,8 @@ class Parser : public StreamParser {
  public:
   explicit Parser(const Options& options);
 
+  void interrupt() override { lines_.reset(); }
+
   static std::vector<OptionSpec> options();
   static std::vector<Bytes> start_commands(const Options& options);
   static std::unique_ptr<StreamEncoder> make_encoder(const Options& options,

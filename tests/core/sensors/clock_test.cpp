@@ -64,16 +64,56 @@ TEST(ClockModel, IsWithinAMillisecondUnderDriftJitterAndWraps) {
     }
 }
 
-TEST(ClockModel, IsNearAMillisecondWithThreeHundredBurstsToGoBy) {
+TEST(ClockModel, IsWithinAMillisecondAtEveryRate) {
+  for (const double rate_hz : {30.0, 60.0, 2000.0}) {
+    ClockModel clock;
+    EXPECT_LT(largest_error_s({.drift = 100e-6, .rate_hz = rate_hz}, 2, clock), 1e-3) << rate_hz;
+  }
+}
+
+// The window is ten minutes long: what it lets go of must not be missed.
+TEST(ClockModel, DoesNotDriftInAnHour) {
+  Random random(8);
+  ClockModel clock;
+  double worst_s = 0.0;
+  for (int i = 0; i < 3600 * 100; ++i) {
+    const double true_s = 5e4 + i * 0.01;
+    const double told = clock.observe(i * 0.01 * (1.0 - 100e-6), true_s + random.in(0.0, 0.05));
+    if (i > 60 * 100) worst_s = std::max(worst_s, std::abs(told - true_s));
+  }
+  EXPECT_LT(worst_s, 1e-3);
+}
+
+// Three hundred arrivals leave room for a line 2 ms off now and then, however it is chosen.
+TEST(ClockModel, IsWithinAMillisecondWithThreeHundredBurstsToGoBy) {
   std::vector<double> errors_s;
-  for (unsigned seed = 1; seed <= 5; ++seed) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
     ClockModel clock;
     errors_s.push_back(largest_error_s({.drift = 100e-6, .burst = 200}, seed, clock));
-    EXPECT_NEAR(clock.drift_ppm(), 100.0, 5.0);
+    EXPECT_NEAR(clock.drift_ppm(), 100.0, 8.0);
   }
   std::sort(errors_s.begin(), errors_s.end());
-  EXPECT_LT(errors_s[2], 1e-3);
-  EXPECT_LT(errors_s[4], 2.5e-3);
+  EXPECT_LT(errors_s[9], 0.6e-3);
+  EXPECT_LT(errors_s[17], 1e-3);
+  EXPECT_LT(errors_s[19], 2.5e-3);
+}
+
+// Where the largest delay drifts and the least does not, the least decides.
+TEST(ClockModel, KeepsToTheLeastDelayWhenTheLargestGrows) {
+  Random random(5);
+  ClockModel clock;
+  for (int i = 0; i < 600; ++i)
+    clock.observe(i, 100.0 + i + random.in(0.0, 0.016 * (1.0 + i / 600.0)));
+  for (const double at : {0.0, 599.0}) EXPECT_NEAR(clock.host_time_s(at), 100.0 + at, 0.5e-3);
+}
+
+// However sharp the line is that many delays keep to.
+TEST(ClockModel, KeepsToTheLeastDelayWhenManyAreAlike) {
+  Random random(6);
+  ClockModel clock;
+  for (int i = 0; i < 600; ++i)
+    clock.observe(i, 100.0 + i + (i % 2 == 0 ? random.in(0.0, 0.016) : 0.016 + 10e-6 * i));
+  for (const double at : {0.0, 599.0}) EXPECT_NEAR(clock.host_time_s(at), 100.0 + at, 0.8e-3);
 }
 
 TEST(ClockModel, TellsTheJitter) {

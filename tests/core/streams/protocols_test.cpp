@@ -250,13 +250,81 @@ TEST(Ximu3, DropsWhatIsNotAMessage) {
 
 TEST(TextLine, DropsEveryLineThatIsNotAsTheProfileSays) {
   const OptionMap options{{"columns", "ax,ay,az"}};
-  for (const auto* bad : {"0,0", "0,0,9.81,1", "ax,ay,az", "0,0,nan", "1,5;2", "0,0,ovf",
-                          "Initializing I2C devices...", "0,,9.81", "0x1,0,9", "\x80,0,9.81"}) {
+  for (const auto* bad :
+       {"0,0", "0,0,9.81,1", "ax,ay,az", "0,0,nan", "1,5;2", "0,0,ovf",
+        "Initializing I2C devices...", "0,0,9.Booting", "0,,9.81", "0x1,0,9", "\x80,0,9.81"}) {
     const auto result =
         parsed("text_line", from_text("half\n" + std::string(bad) + "\n0,0,9.81\n"), options);
     EXPECT_EQ(result.samples.size(), 1u) << bad;
     EXPECT_EQ(result[Count::malformed], 1u) << bad;
   }
+}
+
+// The torn first lines of a device that was sending already, cut at every place.
+void expect_no_wrong_sample(const std::string& columns, const std::vector<std::string>& lines,
+                            const OptionMap& more = {}) {
+  OptionMap options{{"columns", columns}};
+  options.insert(more.begin(), more.end());
+  std::string text;
+  for (const auto& line : lines) text += line + "\r\n";
+  auto whole_options = options;
+  whole_options["skip_first_line"] = "false";
+  const auto whole = parsed("text_line", from_text(text), whole_options);
+  ASSERT_EQ(whole.samples.size(), lines.size());
+  for (std::size_t cut = 1; cut < lines[0].size() + 2; ++cut) {
+    const auto torn = parsed("text_line", from_text(text.substr(cut)), options);
+    const std::size_t lost = whole.samples.size() - torn.samples.size();
+    ASSERT_LE(lost, 1u) << cut;
+    for (std::size_t i = 0; i < torn.samples.size(); ++i) {
+      const auto &got = torn.samples[i], &sent = whole.samples[i + lost];
+      expect_near(got.specific_force, sent.specific_force, 1e-12);
+      EXPECT_EQ(got.counter, sent.counter) << cut;
+      EXPECT_TRUE(same(got.time_s, sent.time_s) || std::abs(got.time_s - sent.time_s) < 1e-9)
+          << cut;
+    }
+  }
+  expect_same_in_pieces("text_line", from_text(text), options);
+}
+
+TEST(TextLine, NeverTakesATornFirstLineForAWholeOne) {
+  expect_no_wrong_sample("ax,ay,az", {"-12.50,0.10,9.81", "-12.40,0.20,9.71", "2.40,0.20,9.61"});
+  expect_no_wrong_sample("time,ax,ay,az",
+                         {"1234567,0.1,0.2,9.81", "1244567,0.1,0.3,9.8", "1254567,0,0,9"});
+  expect_no_wrong_sample("time,ax,ay,az", {"7.51,-0.1,0,9.8", "8.02,0,0,9.8", "8.53,0,0,9.8"},
+                         {{"time_unit", "s"}});
+  expect_no_wrong_sample("time,ax,ay,az", {"7.5,0,0,9.8", "7.6,0,0,9.7", "7.7,0,0,9.6"},
+                         {{"time_unit", "s"}});
+  expect_no_wrong_sample("counter,ax,ay,az", {"1009,0,0,9.8", "1010,0,0,9.7", "1011,0,0,9.6"});
+  expect_no_wrong_sample("sensor,ax,ay,az", {"arm1,0,0,9.8", "m1,0,0,9.7", "1,0,0,9.6"});
+  expect_no_wrong_sample("ax,ay,az", {"a/g: 1 2 9", "a/g: 2 3 8"},
+                         {{"prefix", "a/g: "}, {"separator", "space"}});
+}
+
+TEST(TextLine, TakesAFirstLineThatIsSureToBeWhole) {
+  const auto num = [](const std::string& columns, const std::string& text, OptionMap options = {}) {
+    options["columns"] = columns;
+    return parsed("text_line", from_text(text), options).samples.size();
+  };
+  EXPECT_EQ(num("time,ax,ay,az", "20000,0,0,9\n30000,0,0,8\n"), 2u);
+  EXPECT_EQ(num("time,ax,ay,az", "9000,0,0,9\n30000,0,0,8\n"), 1u);  // perhaps 29000
+  EXPECT_EQ(num("counter,ax,ay,az", "0,0,0,9\n1,0,0,8\n"), 2u);
+  EXPECT_EQ(num("counter,sensor,ax,ay,az", "5,a,0,0,9\n5,b,0,0,9\n6,a,0,0,8\n6,b,0,0,8\n"), 4u);
+  EXPECT_EQ(num("skip,ax,ay,az", "x,0,0,9\n"), 1u);
+  EXPECT_EQ(num("ax,ay,az", "S:0,0,9\n", {{"prefix", "S:"}}), 1u);
+  EXPECT_EQ(num("ax,ay,az", "1,0,0,9\n", {{"prefix", "1,"}}), 0u);
+  EXPECT_EQ(num("sensor,ax,ay,az", "S:a,0,0,9\n", {{"prefix", "S:"}}), 0u);  // perhaps S:S:a
+  EXPECT_EQ(num("ax,ay,az", "0,0,9\n0,0,8\n"), 1u);
+}
+
+TEST(TextLine, TakesTheFirstLineOfAWireThatWasIdle) {
+  const auto parser = make_parser("text_line", {{"columns", "ax,ay,az"}});
+  std::vector<Sample> samples;
+  parser->begin_message();
+  parser->feed(from_text("0,0,9\n0,0,8\n"), samples);
+  EXPECT_EQ(samples.size(), 2u);
+  parser->reset();
+  parser->feed(from_text("0,0,7\n0,0,6\n"), samples);
+  EXPECT_EQ(samples.size(), 3u);
 }
 
 TEST(TextLine, FollowsColumnsSensorsAndClocks) {

@@ -205,6 +205,18 @@ def test_bytes_that_mean_nothing_raise_the_question(links: Links, device: Device
     assert link.state is State.CONFIGURING
 
 
+def test_the_text_of_a_boot_is_borne(links: Links, device: Device) -> None:
+    link, notes = links(str(device.path))
+    until(lambda: notes.connections)
+    for _ in range(4):
+        device.send(b"Initializing I2C device\r\n".replace(b"s", b"z"))
+        time.sleep(0.1)
+    device.send(b"s")
+    until(lambda: link.state is State.STREAMING)
+    assert notes.states == [State.OPENING, State.CONFIGURING, State.STREAMING]
+    assert not any(notes.messages)
+
+
 def test_a_port_that_never_opened_fails_with_a_message(links: Links, tmp_path: Path) -> None:
     link, notes = links(str(tmp_path / "nothing"))
     until(lambda: link.state is State.FAILED)
@@ -232,6 +244,16 @@ def test_a_busy_disk_does_not_make_the_wire_run_over(links: Links, device: Devic
         time.sleep(0.002)
     until(lambda: len(notes.data) == len(everything))
     assert notes.data == everything
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_what_nobody_thought_of_is_told(links: Links) -> None:
+    def opener(port: str, baud: int) -> Any:
+        raise NotImplementedError("no such thing")
+
+    link, _ = links("new://thing", opener=opener)
+    until(lambda: link.state is State.FAILED)
+    assert "no such thing" in link.message
 
 
 def test_pyserials_loop(links: Links) -> None:

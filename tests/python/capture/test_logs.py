@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sparse_mocap.capture import sample_log
 from sparse_mocap.capture.raw_log import MAGIC, Kind, RawLogWriter, Record, read_records
 from sparse_mocap.capture.sample_log import SAMPLE, SampleLogReader, SampleLogWriter
 
@@ -23,8 +24,8 @@ def written(folder: Path, count: int = 40) -> list[Record]:
         payload = source.randbytes(source.choice([0, 1, 7, 60]))
         if kind is Kind.BYTES:  # what looks like the begin of a record is no reason to stumble
             payload += b"\xf5\x4c\x01"
-        log.append(kind, number % 3, number * 1000, payload)
         records.append(Record(kind, number % 3, number * 1000, payload))
+        log.append(records[-1])
     log.close()
     return records
 
@@ -125,3 +126,37 @@ def test_a_torn_sample_is_not_read(tmp_path: Path) -> None:
         assert reader.num_samples == len(reader.read()) == 2
         path.write_bytes(data)
         assert reader.read()["counter"].tolist() == [2]
+
+
+def test_a_log_in_many_files_is_read_as_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sample_log, "PER_FILE", 16)
+    log = SampleLogWriter(tmp_path)
+    with closing(log), closing(SampleLogReader(tmp_path)) as reader:
+        log.append(some_samples(0, 16))
+        assert len(reader.read(10)) == 10
+        log.append(some_samples(16, 84))
+        assert reader.num_samples == 100
+        assert reader.read()["counter"].tolist() == list(range(10, 100))
+        log.append(some_samples(100, 5))
+        assert reader.read()["counter"].tolist() == list(range(100, 105))
+
+
+def test_who_was_stalled_too_long_goes_on_with_the_oldest_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sample_log, "PER_FILE", 16)
+    log = SampleLogWriter(tmp_path)
+    with (
+        closing(log), closing(SampleLogReader(tmp_path)) as stalled,
+        closing(SampleLogReader(tmp_path, 40)) as late,
+    ):  # fmt: skip
+        for begin in range(0, 100, 10):
+            log.append(some_samples(begin, 10))
+            log.give_up()
+        assert len(list(tmp_path.iterdir())) == 3
+        assert late.read()["counter"].tolist() == list(range(64, 100))
+        # The file that it has open is there for it still, where the system allows that.
+        assert stalled.read()["counter"].tolist() == [*range(16), *range(64, 100)]
+        assert stalled.position == log.num_samples == 100
