@@ -5,25 +5,24 @@
 #include <vector>
 
 #include "sparse_mocap/database/motion_database.hpp"
-#include "sparse_mocap/reconstruction/method.hpp"
+#include "sparse_mocap/readings/reading.hpp"
 
 namespace sparse_mocap {
 
-// What every method is compared with. Each gives one database frame a reading; clips
-// in excluded_clips
-// and copies at other tempos are never used.
+// What every method is compared with. Each gives one database frame a reading; clips in
+// excluded_clips and copies at other tempos are never used.
 
 // Plays back the database: the frame at the end of the best path of the online lazy neighbourhood
 // graph (K = 4096, raw readings).
 std::vector<int> playback_best_path(const MotionDatabase& database,
-                                    const std::vector<WornSensor>& sensors,
+                                    const std::vector<Sensor>& sensors,
                                     const std::vector<Reading>& take,
                                     const std::vector<int>& excluded_clips);
 
 // The frame whose last `window` readings are nearest to the take's (the idea of Slyper and Hodgins
 // 2008).
 std::vector<int> nearest_windows(const MotionDatabase& database,
-                                 const std::vector<WornSensor>& sensors,
+                                 const std::vector<Sensor>& sensors,
                                  const std::vector<Reading>& take, int window,
                                  const std::vector<int>& excluded_clips);
 

@@ -1,67 +1,99 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/methods/registry.hpp"
 
-#include <array>
-#include <string>
+#include <utility>
 
 #include "sparse_mocap/base/errors.hpp"
-#include "sparse_mocap/tautges2011/reconstructor.hpp"
+#include "sparse_mocap/path_regression/method.hpp"
+#include "sparse_mocap/sensors/sites.hpp"
+#include "sparse_mocap/tautges2011/method.hpp"
 
 namespace sparse_mocap {
 namespace {
 
-struct Entry {
-  std::string_view name;
-  std::vector<std::string_view> (*presets)();
-  std::unique_ptr<Method> (*make)(std::string_view preset,
-                                  std::shared_ptr<const MotionDatabase> database,
-                                  const std::vector<WornSensor>& sensors,
-                                  const std::vector<int>& excluded_clips);
-};
-
-template <typename Reconstructor, auto preset_of>
-std::unique_ptr<Method> make(std::string_view preset,
-                             std::shared_ptr<const MotionDatabase> database,
-                             const std::vector<WornSensor>& sensors,
-                             const std::vector<int>& excluded_clips) {
-  return std::make_unique<Reconstructor>(std::move(database), sensors, preset_of(preset),
-                                         excluded_clips);
+void require(bool is_met, const MethodInfo& method, const std::string& what) {
+  if (!is_met) throw ConfigError("method " + method.name + " needs " + what);
 }
 
-const std::vector<Entry>& entries() {
-  static const std::vector<Entry> list{
-      {"tautges2011", [] { return tautges2011::preset_names(); },
-       make<tautges2011::Reconstructor, tautges2011::preset>},
-  };
-  return list;
+std::string missing_channels(Channels required, Channels given) {
+  std::string names;
+  for (const Channel channel : all_channels())
+    if (required.has(channel) && !given.has(channel))
+      names += (names.empty() ? "" : ", ") + std::string(name_of(channel));
+  return names;
 }
 
-const Entry& find(std::string_view method) {
-  std::string known;
-  for (const auto& entry : entries()) {
-    if (entry.name == method) return entry;
-    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+void check_sensors(const MethodInfo& method, const std::vector<Sensor>& sensors) {
+  const auto count = static_cast<int>(sensors.size());
+  const std::string range =
+      method.fewest_sensors == method.most_sensors
+          ? std::to_string(method.fewest_sensors)
+          : std::to_string(method.fewest_sensors) + " to " + std::to_string(method.most_sensors);
+  require(count >= method.fewest_sensors && count <= method.most_sensors, method,
+          range + " sensors, got " + std::to_string(count));
+  for (const Sensor& sensor : sensors) {
+    const auto missing = missing_channels(method.required_channels, sensor.channels);
+    require(missing.empty(), method,
+            missing + " of every sensor, and " +
+                std::string(all_sites().at(static_cast<std::size_t>(sensor.site)).name) +
+                " does not give it");
   }
-  throw ConfigError("unknown method '" + std::string(method) + "'; known are " + known);
+}
+
+void check(const MethodInfo& method, const MethodContext& context) {
+  require(!method.needs_database || context.database, method, "a motion database (--database)");
+  require(!method.needs_model || context.model, method,
+          "a trained model (--model); `train` makes one");
+  require(!method.needs_body || context.body, method, "a calibrated body (--body)");
+  check_sensors(method, context.sensors);
 }
 
 }  // namespace
 
-std::vector<std::string_view> method_names() {
-  std::vector<std::string_view> names;
-  for (const auto& entry : entries()) names.push_back(entry.name);
-  return names;
+const std::vector<MethodEntry>& methods() {
+  static const std::vector<MethodEntry> list{
+      path_regression::method(),
+      tautges2011::method(),
+  };
+  return list;
 }
 
-std::vector<std::string_view> method_presets(std::string_view method) {
-  return find(method).presets();
+const MethodEntry& find_method(std::string_view name) {
+  std::string known;
+  for (const auto& method : methods()) {
+    if (method.info.name == name) return method;
+    known += (known.empty() ? "" : ", ") + method.info.name;
+  }
+  throw ConfigError("unknown method '" + std::string(name) + "'; known are " + known);
 }
 
-std::unique_ptr<Method> make_method(std::string_view method, std::string_view preset,
-                                    std::shared_ptr<const MotionDatabase> database,
-                                    const std::vector<WornSensor>& sensors,
-                                    const std::vector<int>& excluded_clips) {
-  return find(method).make(preset, std::move(database), sensors, excluded_clips);
+std::unique_ptr<LiveMethod> make_live_method(const MethodEntry& method,
+                                             const MethodSettings& settings,
+                                             MethodContext context) {
+  if (method.make_live == nullptr)
+    throw ConfigError("method " + method.info.name +
+                      " does not work live: record a take and reconstruct it in best quality");
+  check(method.info, context);
+  return method.make_live(settings, std::move(context));
+}
+
+std::unique_ptr<WholeTakeMethod> make_whole_take_method(const MethodEntry& method,
+                                                        const MethodSettings& settings,
+                                                        MethodContext context) {
+  if (method.make_whole_take == nullptr)
+    throw ConfigError("method " + method.info.name +
+                      " has no best quality: it works live only, frame by frame");
+  check(method.info, context);
+  return method.make_whole_take(settings, std::move(context));
+}
+
+Model train_model(const MethodEntry& method, const MethodSettings& settings,
+                  const std::vector<TrainingClip>& clips, const Progress& progress) {
+  if (method.train == nullptr)
+    throw ConfigError("method " + method.info.name +
+                      " needs no trained model: it works on a motion database as it is");
+  if (clips.empty()) throw ConfigError("at least one clip is needed to train a model");
+  return method.train(settings, clips, progress);
 }
 
 }  // namespace sparse_mocap

@@ -2,24 +2,32 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
-#include "sparse_mocap/database/motion_database.hpp"
-#include "sparse_mocap/reconstruction/method.hpp"
+#include "sparse_mocap/reconstruction/method_info.hpp"
 
 namespace sparse_mocap {
 
-// The methods by name; a new one is one line in registry.cpp.
-std::vector<std::string_view> method_names();
+// All methods, the default first; a new one is one line in registry.cpp.
+const std::vector<MethodEntry>& methods();
 
-// Presets of a method, the default first. Throws ConfigError for an unknown name.
-std::vector<std::string_view> method_presets(std::string_view method);
+// Throws ConfigError naming the known methods.
+const MethodEntry& find_method(std::string_view name);
 
-// A fresh reconstruction. Clips in excluded_clips are never retrieved. Throws ConfigError.
-std::unique_ptr<Method> make_method(std::string_view method, std::string_view preset,
-                                    std::shared_ptr<const MotionDatabase> database,
-                                    const std::vector<WornSensor>& sensors,
-                                    const std::vector<int>& excluded_clips = {});
+// A reconstruction of one performance. Throws ConfigError, in one line that says what is missing:
+// a method that does not work this way, a database, model or body that it needs, sensors that are
+// too few, too many or without a channel that it needs, settings that cannot be.
+std::unique_ptr<LiveMethod> make_live_method(const MethodEntry& method,
+                                             const MethodSettings& settings,
+                                             MethodContext context);
+std::unique_ptr<WholeTakeMethod> make_whole_take_method(const MethodEntry& method,
+                                                        const MethodSettings& settings,
+                                                        MethodContext context);
+
+// What a method learns from clips. Throws ConfigError for methods that learn nothing.
+Model train_model(const MethodEntry& method, const MethodSettings& settings,
+                  const std::vector<TrainingClip>& clips, const Progress& progress);
 
 }  // namespace sparse_mocap

@@ -185,6 +185,13 @@ void forward_kinematics(const Skeleton& skeleton, const Vec3& position_root,
   forward_kinematics(skeleton, position_root, R_joint, out);
 }
 
+Eigen::VectorXd stacked_ends(const JointTransforms& transforms) {
+  Eigen::VectorXd ends(3 * static_cast<Eigen::Index>(transforms.end.size()));
+  for (std::size_t j = 0; j < transforms.end.size(); ++j)
+    ends.segment<3>(3 * static_cast<Eigen::Index>(j)) = transforms.end[j];
+  return ends;
+}
+
 JointTransforms rest_pose(const Skeleton& skeleton) {
   JointTransforms rest;
   forward_kinematics(

@@ -88,6 +88,9 @@ void forward_kinematics(const Skeleton& skeleton, const std::vector<Vec3>& offse
 void forward_kinematics(const Skeleton& skeleton, const Vec3& position_root,
                         const Eigen::VectorXd& angles, JointTransforms& out);
 
+// The joints' ends one after another: 3 joints (m).
+Eigen::VectorXd stacked_ends(const JointTransforms& transforms);
+
 // Where the joints are when no joint is turned and the root is at the origin.
 JointTransforms rest_pose(const Skeleton& skeleton);
 

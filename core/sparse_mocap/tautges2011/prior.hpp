@@ -3,9 +3,10 @@
 
 #include <Eigen/Core>
 
+#include "sparse_mocap/retrieval/neighbourhood.hpp"
 #include "sparse_mocap/tautges2011/config.hpp"
+#include "sparse_mocap/tautges2011/derivatives.hpp"
 #include "sparse_mocap/tautges2011/energy.hpp"
-#include "sparse_mocap/tautges2011/neighbourhood.hpp"
 
 namespace sparse_mocap::tautges2011 {
 
@@ -13,15 +14,15 @@ namespace sparse_mocap::tautges2011 {
 // say. Positions are stacked joint ends in the heading frame, m.
 
 // Equations (4), (5).
-KernelTerm pose_prior(const Neighbourhood& neighbours, const Config& config);
+KernelTerm pose_prior(const retrieval::Neighbourhood& neighbours, const Config& config);
 
 // Equations (6), (7); positions_now is x^t.
-KernelTerm motion_prior(const Neighbourhood& neighbours, const Config& config,
+KernelTerm motion_prior(const PathDerivatives& derivatives, const Config& config,
                         const Eigen::VectorXd& positions_now, double dt_s);
 
 // Equations (8), (9). dt sqrt|a_i - a| is the kernel of positions at 2 x^t - x^(t-1) + a_i dt^2;
 // positions_before is x^(t-1).
-KernelTerm smoothness_prior(const Neighbourhood& neighbours, const Config& config,
+KernelTerm smoothness_prior(const PathDerivatives& derivatives, const Config& config,
                             const Eigen::VectorXd& positions_now,
                             const Eigen::VectorXd& positions_before, double dt_s);
 

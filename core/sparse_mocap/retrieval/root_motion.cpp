@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/tautges2011/root_motion.hpp"
+#include "sparse_mocap/retrieval/root_motion.hpp"
 
 #include <algorithm>
 
 #include "sparse_mocap/motion/heading.hpp"
 #include "sparse_mocap/motion/standard_skeleton.hpp"
 
-namespace sparse_mocap::tautges2011 {
+namespace sparse_mocap::retrieval {
 
 RootRates root_rates(const MotionDatabase& database, const Neighbourhood& neighbours) {
   Eigen::Vector4d motion = Eigen::Vector4d::Zero();
@@ -61,4 +61,4 @@ void RootTracker::advance(const RootRates& rates, const Eigen::VectorXd& positio
   positions_before_ = positions;
 }
 
-}  // namespace sparse_mocap::tautges2011
+}  // namespace sparse_mocap::retrieval

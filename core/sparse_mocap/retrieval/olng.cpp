@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/tautges2011/olng.hpp"
+#include "sparse_mocap/retrieval/olng.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
-namespace sparse_mocap::tautges2011 {
+namespace sparse_mocap::retrieval {
 namespace {
 
 struct Step {
@@ -117,4 +117,4 @@ void OnlineLazyNeighbourhoodGraph::extend(std::span<const Neighbour> neighbours)
   ++now_;
 }
 
-}  // namespace sparse_mocap::tautges2011
+}  // namespace sparse_mocap::retrieval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/tautges2011/minimizer.hpp"
+#include "sparse_mocap/retrieval/pose_minimizer.hpp"
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -7,13 +7,13 @@
 #include <stdexcept>
 #include <utility>
 
-namespace sparse_mocap::tautges2011 {
+namespace sparse_mocap::retrieval {
 namespace {
 
-constexpr double kRelativeDecrease = 1e-7;  // below this share of the energy, it has converged
+constexpr double kRelativeDecrease = 1e-7;  // below this share of the value, it has converged
 constexpr int kMaxHalvings = 12;
 
-Eigen::VectorXd best_start(const Energy& energy, const PoseSubspace& subspace,
+Eigen::VectorXd best_start(const PoseObjective& objective, const PoseSubspace& subspace,
                            const std::vector<Eigen::VectorXd>& starts) {
   if (starts.empty()) throw std::invalid_argument("minimize: at least one start is needed");
   Eigen::VectorXd best;
@@ -21,7 +21,7 @@ Eigen::VectorXd best_start(const Energy& energy, const PoseSubspace& subspace,
   for (const auto& start : starts) {
     Eigen::VectorXd coordinates = subspace.coordinates(start);
     if (starts.size() == 1) return coordinates;
-    const double value = energy.value(subspace.pose(coordinates));
+    const double value = objective.value(subspace.pose(coordinates));
     if (value >= lowest) continue;
     lowest = value;
     best = std::move(coordinates);
@@ -30,7 +30,7 @@ Eigen::VectorXd best_start(const Energy& energy, const PoseSubspace& subspace,
 }
 
 // The minimiser of the model, a little regularised so that flat directions stay where they are.
-Eigen::VectorXd model_step(const Energy::Model& model) {
+Eigen::VectorXd model_step(const PoseObjective::Model& model) {
   Eigen::MatrixXd h = model.hessian;
   h.diagonal().array() += 1e-9 * (1.0 + h.diagonal().maxCoeff());
   return -h.ldlt().solve(model.gradient);
@@ -38,20 +38,20 @@ Eigen::VectorXd model_step(const Energy::Model& model) {
 
 }  // namespace
 
-Minimum minimize(const Energy& energy, const PoseSubspace& subspace,
+Minimum minimize(const PoseObjective& objective, const PoseSubspace& subspace,
                  const std::vector<Eigen::VectorXd>& starts, int max_iterations) {
   Eigen::VectorXd y = best_start(energy, subspace, starts);
   Minimum minimum;
-  Energy::Model model = energy.majorised(subspace.pose(y), subspace.basis);
+  PoseObjective::Model model = objective.majorised(subspace.pose(y), subspace.basis);
   while (minimum.iterations < max_iterations && !minimum.is_converged) {
     ++minimum.iterations;
     Eigen::VectorXd step = model_step(model);
     const double promised = -0.5 * model.gradient.dot(step);
     const double negligible = kRelativeDecrease * std::abs(model.value);
-    double value = energy.value(subspace.pose(y + step));
+    double value = objective.value(subspace.pose(y + step));
     for (int halving = 0; value > model.value && halving < kMaxHalvings; ++halving) {
       step *= 0.5;
-      value = energy.value(subspace.pose(y + step));
+      value = objective.value(subspace.pose(y + step));
     }
     if (value > model.value) {
       minimum.is_converged = promised <= negligible;
@@ -59,11 +59,11 @@ Minimum minimize(const Energy& energy, const PoseSubspace& subspace,
     }
     minimum.is_converged = model.value - value <= negligible;
     y += step;
-    model = energy.majorised(subspace.pose(y), subspace.basis);
+    model = objective.majorised(subspace.pose(y), subspace.basis);
   }
   minimum.angles = subspace.pose(y);
-  minimum.energy = model.value;
+  minimum.value = model.value;
   return minimum;
 }
 
-}  // namespace sparse_mocap::tautges2011
+}  // namespace sparse_mocap::retrieval

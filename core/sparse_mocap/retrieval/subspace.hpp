@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace sparse_mocap::tautges2011 {
+namespace sparse_mocap::retrieval {
 
 // A local linear model of poses (Tautges et al. 2011, section 5.3): pose = mean + basis * y.
 struct PoseSubspace {
@@ -23,4 +23,4 @@ struct PoseSubspace {
 PoseSubspace weighted_pca(const Eigen::MatrixXd& poses, const Eigen::VectorXd& weights,
                           double variance);
 
-}  // namespace sparse_mocap::tautges2011
+}  // namespace sparse_mocap::retrieval

@@ -6,9 +6,9 @@
 
 #include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/motion/skeleton.hpp"
-#include "sparse_mocap/tautges2011/neighbourhood.hpp"
+#include "sparse_mocap/retrieval/neighbourhood.hpp"
 
-namespace sparse_mocap::tautges2011 {
+namespace sparse_mocap::retrieval {
 
 // What the neighbours say about the root (Tautges et al. 2011, section 6.4): weighted means.
 struct RootRates {
@@ -46,4 +46,4 @@ class RootTracker {
   Eigen::VectorXd positions_before_;
 };
 
-}  // namespace sparse_mocap::tautges2011
+}  // namespace sparse_mocap::retrieval

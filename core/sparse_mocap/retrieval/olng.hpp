@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "sparse_mocap/database/index.hpp"
+#include "sparse_mocap/retrieval/knn_index.hpp"
 
-namespace sparse_mocap::tautges2011 {
+namespace sparse_mocap::retrieval {
 
 struct OlngConfig {
   // A column that a path leaves unmatched costs penalty times the distance of the column's farthest
@@ -81,4 +81,4 @@ class OnlineLazyNeighbourhoodGraph {
   std::vector<Path> paths_;
 };
 
-}  // namespace sparse_mocap::tautges2011
+}  // namespace sparse_mocap::retrieval

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace sparse_mocap {
+namespace sparse_mocap::retrieval {
 
 using FeatureRows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -41,4 +41,4 @@ class KnnIndex {
   std::unique_ptr<Tree> tree_;
 };
 
-}  // namespace sparse_mocap
+}  // namespace sparse_mocap::retrieval

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/tautges2011/subspace.hpp"
+#include "sparse_mocap/retrieval/subspace.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-namespace sparse_mocap::tautges2011 {
+namespace sparse_mocap::retrieval {
 
 PoseSubspace weighted_pca(const Eigen::MatrixXd& poses, const Eigen::VectorXd& weights,
                           double variance) {
@@ -26,4 +26,4 @@ PoseSubspace weighted_pca(const Eigen::MatrixXd& poses, const Eigen::VectorXd& w
   return out;
 }
 
-}  // namespace sparse_mocap::tautges2011
+}  // namespace sparse_mocap::retrieval

@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 
-#include "sparse_mocap/tautges2011/neighbourhood.hpp"
+#include "sparse_mocap/retrieval/neighbourhood.hpp"
 
-namespace sparse_mocap::tautges2011 {
+namespace sparse_mocap::path_regression {
 
 // Local linear (ridge) regression as a re-weighting: for any quantity y_i of the neighbours, the
 // value that regression on their features predicts at the query is sum_i out_i y_i.
@@ -17,6 +17,6 @@ Eigen::VectorXd regression_weights(const Eigen::MatrixXf& features, const Eigen:
 
 // Moves all neighbours' poses alike, so that their weighted mean becomes the one that the
 // regression predicts; how they differ from each other stays.
-void shift_to_regression(Neighbourhood& neighbours, const Eigen::VectorXd& regression_weights);
+void shift_to_regression(retrieval::Neighbourhood& neighbours, const Eigen::VectorXd& regression_weights);
 
-}  // namespace sparse_mocap::tautges2011
+}  // namespace sparse_mocap::path_regression

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/tautges2011/regression.hpp"
+#include "sparse_mocap/path_regression/regression.hpp"
 
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <vector>
 
-namespace sparse_mocap::tautges2011 {
+namespace sparse_mocap::path_regression {
 
 Eigen::VectorXd regression_weights(const Eigen::MatrixXf& features, const Eigen::VectorXf& query,
                                    const Eigen::VectorXd& weights, double ridge) {
@@ -29,7 +29,7 @@ Eigen::VectorXd regression_weights(const Eigen::MatrixXf& features, const Eigen:
   return weights.array() * (1.0 + lean.cast<double>().array());
 }
 
-void shift_to_regression(Neighbourhood& neighbours, const Eigen::VectorXd& regression_weights) {
+void shift_to_regression(retrieval::Neighbourhood& neighbours, const Eigen::VectorXd& regression_weights) {
   const Eigen::VectorXd difference = regression_weights - neighbours.weights;
   const Eigen::VectorXd angle_shift = neighbours.angles * difference;
   const Eigen::VectorXd position_shift = neighbours.positions * difference;
@@ -37,4 +37,4 @@ void shift_to_regression(Neighbourhood& neighbours, const Eigen::VectorXd& regre
   neighbours.positions.colwise() += position_shift;
 }
 
-}  // namespace sparse_mocap::tautges2011
+}  // namespace sparse_mocap::path_regression

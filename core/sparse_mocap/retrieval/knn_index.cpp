@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/database/index.hpp"
+#include "sparse_mocap/retrieval/knn_index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace sparse_mocap {
+namespace sparse_mocap::retrieval {
 namespace {
 
 constexpr std::size_t kLeafSize = 64;
@@ -177,4 +177,4 @@ void KnnIndex::search(std::span<const float> query, int k, std::vector<Neighbour
     out.push_back({std::sqrt(squared), static_cast<int>(tree_->rows[place])});
 }
 
-}  // namespace sparse_mocap
+}  // namespace sparse_mocap::retrieval

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/path_regression/config.hpp"
+
+#include <array>
+
+#include "sparse_mocap/base/errors.hpp"
+
+namespace sparse_mocap::path_regression {
+namespace {
+
+using retrieval::FeaturePart;
+using retrieval::SmoothedSignals;
+
+// Half of what the average is later_s later minus what it is earlier_s earlier.
+FeaturePart half_change(const SmoothedSignals& average, double later_s, double earlier_s) {
+  const auto moved = [&](double by_s, double gain) {
+    return SmoothedSignals{average.centre_s + by_s, average.sigma_s, average.from_s + by_s,
+                           average.to_s + by_s, gain};
+  };
+  return {moved(later_s, 0.5), moved(-earlier_s, -0.5)};
+}
+
+constexpr double kLiveLookAhead_s = 0.04;
+
+}  // namespace
+
+// Found by trial on HDM05, for known and unknown performers.
+Config live_config() {
+  Config config;
+  const SmoothedSignals now{0.0, 0.04, -0.2, kLiveLookAhead_s};
+  config.features = {{now}, half_change(now, 0.0, 0.16)};
+  config.regression_features = {{{0.04, 0.028, -0.12, kLiveLookAhead_s}},
+                                {{-0.04, 0.028, -0.2, kLiveLookAhead_s}},
+                                {{-0.16, 0.04, -0.36, kLiveLookAhead_s}},
+                                {{-0.32, 0.06, -0.6, kLiveLookAhead_s}},
+                                {{-0.56, 0.08, -0.88, kLiveLookAhead_s}}};
+  return config;
+}
+
+Config whole_take_config() {
+  Config config;
+  const SmoothedSignals now{0.0, 0.04, -0.2, 0.2};
+  config.features = {{now}, half_change(now, 0.12, 0.12)};
+  config.forgetting = 0.95;
+  config.num_paths = 512;
+  config.sharpness = 1.4;
+  for (const auto& [centre_s, sigma_s] :
+       {std::array{0.08, 0.028}, std::array{0.24, 0.04}, std::array{0.48, 0.08}})
+    for (const double side : {-1.0, 1.0})
+      config.regression_features.push_back(
+          {{side * centre_s, sigma_s, side * centre_s - 0.24, side * centre_s + 0.24}});
+  config.pose_weight = 5.0;
+  config.motion_weight = 0.0;
+  config.smoothing_s = 0.036;
+  return config;
+}
+
+const std::vector<PresetInfo>& presets() {
+  static const std::vector<PresetInfo> list{
+      {"default", "What came closest to recorded motion in the evaluation."}};
+  return list;
+}
+
+const OptionTable<Config>& options() {
+  static const auto table =
+      OptionTable<Config>()
+          .integer("num_neighbours", &Config::num_neighbours, 1, 1'000'000,
+                   "frames of the database that are retrieved for each reading")
+          .integer("num_paths", &Config::num_paths, 1, 1'000'000,
+                   "best paths that the pose is made from")
+          .number("leg_weight", &Config::leg_weight, 1e-3, 1e3,
+                  "weight of sensors on legs in the search")
+          .number("gravity_weight_mps2", &Config::gravity_weight_mps2, 0.0, 1e3,
+                  "what a unit of gravity direction counts in the search")
+          .flag("use_tempo_copies", &Config::use_tempo_copies,
+                "whether copies of the clips at other tempos are searched")
+          .number("penalty", &Config::penalty, 0.0, 100.0,
+                  "cost of a reading that a path skips, in distances of its farthest neighbour")
+          .number("forgetting", &Config::forgetting, 0.0, 1.0,
+                  "how much a reading counts one reading later")
+          .number("sharpness", &Config::sharpness, 0.0, 1e3,
+                  "how much better paths count more than others")
+          .number("regression_ridge", &Config::regression_ridge, 0.0, 1e9,
+                  "caution of the regression from readings to poses; 0 turns it off")
+          .number("pose_weight", &Config::pose_weight, 1e-6, 1e6,
+                  "weight of the retrieved poses")
+          .number("motion_weight", &Config::motion_weight, 0.0, 1e6,
+                  "weight of the retrieved movement since the frame before")
+          .number("gravity_weight", &Config::gravity_weight, 0.0, 1e6,
+                  "weight of the limbs' measured inclination")
+          .number("pca_variance", &Config::pca_variance, 0.01, 1.0,
+                  "share of the poses' variance that the pose may vary in")
+          .integer("max_iterations", &Config::max_iterations, 1, 10'000,
+                   "steps of the minimisation, at most")
+          .number("foot_lock", &Config::foot_lock, 0.0, 1.0,
+                  "how firmly the root stays on a standing foot")
+          .number("smoothing_s", &Config::smoothing_s, 0.0, 1.0,
+                  "final smoothing of whole takes, s");
+  return table;
+}
+
+Config with_settings(Config config, const MethodSettings& settings) {
+  if (!settings.preset.empty() && settings.preset != presets().front().name)
+    throw ConfigError("unknown preset '" + settings.preset + "'; path_regression has default");
+  options().apply(settings.options, config);
+  return config;
+}
+
+}  // namespace sparse_mocap::path_regression

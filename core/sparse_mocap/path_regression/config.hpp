@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "sparse_mocap/reconstruction/method_info.hpp"
+#include "sparse_mocap/reconstruction/options.hpp"
+#include "sparse_mocap/retrieval/features.hpp"
+
+namespace sparse_mocap::path_regression {
+
+// Everything that a reconstruction can be told. The defaults are what live and whole takes share.
+struct Config {
+  // Retrieval.
+  int num_neighbours = 4096;       // at most kNeighbourShare of the searched frames
+  double leg_weight = 1.6;         // of sensors on legs, in the search
+  double gravity_weight_mps2 = 9.81;  // what a unit of gravity direction counts there
+  bool use_tempo_copies = true;    // search clips at other tempos than performed as well
+  double penalty = 0.8;            // of an unmatched reading, in distances of its farthest neighbour
+  double forgetting = 0.9;         // how much a reading counts one reading later
+  std::vector<retrieval::FeaturePart> features;
+  static constexpr double kNeighbourShare = 0.5;
+
+  // Weights of the paths.
+  int num_paths = 256;  // at most a quarter of the neighbours
+  double sharpness = 1.3;
+
+  // Local regression from signals to poses; 0 turns it off. The ridge is in units of the mean
+  // variance of its features.
+  double regression_ridge = 6.0;
+  std::vector<retrieval::FeaturePart> regression_features;
+
+  // The pose: squared distances (m) to what the paths, their steps and gravity say.
+  double pose_weight = 2.5;
+  double motion_weight = 2.5;
+  double gravity_weight = 30.0;
+  double pca_variance = 0.999;
+  int max_iterations = 50;
+
+  // The root: how far a foot that stands for certain overrules the retrieved motion.
+  double foot_lock = 0.8;
+
+  // Whole takes: standard deviation of the final low-pass; 0 turns it off.
+  double smoothing_s = 0.0;
+};
+
+// Each pose must be ready soon: retrieval looks 40 ms ahead.
+Config live_config();
+// Every pose may depend on the whole take.
+Config whole_take_config();
+
+const std::vector<PresetInfo>& presets();
+const OptionTable<Config>& options();
+
+// The configuration with the settings applied. Throws ConfigError.
+Config with_settings(Config config, const MethodSettings& settings);
+
+}  // namespace sparse_mocap::path_regression

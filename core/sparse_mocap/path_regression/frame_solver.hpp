@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "sparse_mocap/path_regression/config.hpp"
+#include "sparse_mocap/path_regression/solved_frame.hpp"
+#include "sparse_mocap/reconstruction/method_info.hpp"
+#include "sparse_mocap/retrieval/features.hpp"
+#include "sparse_mocap/retrieval/knn_index.hpp"
+#include "sparse_mocap/retrieval/neighbourhood.hpp"
+#include "sparse_mocap/retrieval/root_motion.hpp"
+#include "sparse_mocap/retrieval/signals.hpp"
+
+namespace sparse_mocap::path_regression {
+
+// What live and whole-take reconstruction do alike with a frame: search the database, and make a
+// pose from the paths that lead there.
+class FrameSolver {
+ public:
+  // Throws ConfigError.
+  FrameSolver(const Config& config, const MethodContext& context);
+
+  const MotionDatabase& database() const { return *database_; }
+  const Config& config() const { return config_; }
+  const std::vector<retrieval::Signal>& signals() const { return signals_; }
+  Eigen::Index num_sensors() const { return num_sensors_; }
+  int look_ahead() const;  // frames
+  int reach_back() const;  // frames
+
+  // The database frames whose features are nearest to those of the window's row.
+  void search(const retrieval::SignalWindow& window, std::vector<retrieval::Neighbour>& out) const;
+  // The pose that paths, all of which end in neighbours of the window's row, and the frame before
+  // ask for.
+  SolvedFrame solve(const std::vector<retrieval::Path>& paths,
+                    const retrieval::SignalWindow& window, const Reading& reading);
+  void reset();
+
+ private:
+  void regress(retrieval::Neighbourhood& neighbours, const retrieval::SignalWindow& window) const;
+  Eigen::VectorXd fitted_angles(const retrieval::Neighbourhood& neighbours,
+                                const Reading& reading) const;
+  Eigen::MatrixXd steps_into(const std::vector<retrieval::Path>& paths) const;
+
+  std::shared_ptr<const MotionDatabase> database_;
+  std::vector<retrieval::Signal> signals_;
+  Eigen::Index num_sensors_ = 0;
+  std::vector<float> column_weights_;
+  retrieval::FeatureLayout features_, regression_features_;
+  retrieval::FeatureRows signal_rows_;  // of the database
+  retrieval::KnnIndex index_;
+  Config config_;
+  retrieval::RootTracker root_;
+
+  struct Past {
+    Eigen::VectorXd angles, positions;
+  };
+  std::optional<Past> past_;
+};
+
+}  // namespace sparse_mocap::path_regression

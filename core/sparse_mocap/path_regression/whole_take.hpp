@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "sparse_mocap/path_regression/frame_solver.hpp"
+
+namespace sparse_mocap::path_regression {
+
+// Best quality: paths that know what comes after a frame too, and a smooth take.
+class WholeTakeReconstructor : public WholeTakeMethod {
+ public:
+  // Throws ConfigError.
+  WholeTakeReconstructor(const Config& config, const MethodContext& context)
+      : solver_(config, context) {}
+
+  const Skeleton& skeleton() const override { return solver_.database().skeleton(); }
+  double rate_hz() const override { return solver_.database().rate_hz(); }
+
+  std::vector<PoseEstimate> solve(const std::vector<Reading>& take,
+                                  const Progress& progress) override;
+
+ private:
+  FrameSolver solver_;
+};
+
+}  // namespace sparse_mocap::path_regression

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sparse_mocap/database/motion_database.hpp"
+#include "sparse_mocap/reconstruction/method.hpp"
+#include "sparse_mocap/reconstruction/options.hpp"
+
+namespace sparse_mocap {
+
+struct Model;
+
+// Settings that belong together, by a name.
+struct PresetInfo {
+  std::string name;
+  std::string help;
+};
+
+// A comparison that a paper makes: `evaluate` runs every variant and states the errors side by
+// side.
+struct Experiment {
+  enum class Error { position_cm, joint_angle_deg };
+
+  struct Variant {
+    std::string label;
+    OptionValues options;
+  };
+  struct ClipPair {  // names of clips, as patterns
+    std::string training, test;
+  };
+
+  std::string name;
+  std::string help;  // with the figure or table of the paper
+  std::vector<Variant> variants;
+  std::vector<ClipPair> pairs;  // empty: the evaluation's own scenario
+  Error error = Error::position_cm;
+};
+
+// What people and programs can know of a method before they use it.
+struct MethodInfo {
+  std::string name;
+  std::string title;
+  std::string summary;               // one sentence
+  std::string paper;                 // empty: the project's own method
+  std::vector<PresetInfo> presets;   // the default first
+  std::vector<OptionInfo> options;   // with the default preset's values
+  Channels required_channels;        // of every sensor
+  Channels optional_channels;        // used where a sensor has them
+  int fewest_sensors = 1;
+  int most_sensors = 1;
+  bool needs_database = false;
+  bool needs_model = false;
+  bool needs_body = false;
+  std::vector<Experiment> experiments;
+};
+
+// What a method works with, for one performance.
+struct MethodContext {
+  std::shared_ptr<const MotionDatabase> database;
+  std::shared_ptr<const Model> model;
+  std::optional<Skeleton> body;  // the performer's own standard skeleton
+  std::vector<Sensor> sensors;
+  std::vector<int> excluded_clips;  // of the database, as if they were not in it
+};
+
+// A preset, and options that differ from it.
+struct MethodSettings {
+  std::string preset;  // empty: the default
+  OptionValues options;
+};
+
+// One example that a model is trained from.
+struct TrainingClip {
+  std::string name;
+  std::string motion_class;       // empty: not known
+  Motion motion;                  // on a standard skeleton
+  std::vector<Sensor> sensors;    // of readings
+  std::vector<Reading> readings;  // recorded with the motion, at its rate; empty: simulate them
+};
+
+// A method as the registry knows it. A factory that is null means that the method does not work
+// that way. Factories throw ConfigError; trainers also Cancelled.
+struct MethodEntry {
+  MethodInfo info;
+  std::unique_ptr<LiveMethod> (*make_live)(const MethodSettings&, MethodContext) = nullptr;
+  std::unique_ptr<WholeTakeMethod> (*make_whole_take)(const MethodSettings&,
+                                                      MethodContext) = nullptr;
+  Model (*train)(const MethodSettings&, const std::vector<TrainingClip>&,
+                 const Progress&) = nullptr;
+};
+
+}  // namespace sparse_mocap

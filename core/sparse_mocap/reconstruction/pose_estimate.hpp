@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sparse_mocap/base/conventions.hpp"
+#include "sparse_mocap/motion/motion.hpp"
+
+namespace sparse_mocap {
+
+// What a method says of a frame beside the pose, by name; the unit is part of the name. Methods
+// that retrieve from a database give
+//   sensor_misfit_mps2  a sensor: retrieved against measured specific force; NaN while it is silent
+//   spread_m            a joint: weighted deviation of the retrieved positions
+//   clip, database_frame  the ones that the pose is closest to
+using Diagnostics = std::map<std::string, Eigen::VectorXd, std::less<>>;
+
+// One reconstructed frame of a method's skeleton.
+struct PoseEstimate {
+  double time_s = 0.0;  // of the reading that it belongs to
+  std::vector<Quat> rotations;  // R_parent_joint of every joint; the root's is R_world_root
+  Vec3 root_position = Vec3::Zero();                   // m, world
+  Eigen::Vector2d contacts = Eigen::Vector2d::Zero();  // probability that left, right foot stand
+  Diagnostics diagnostics;
+};
+
+// The rotations of a pose vector (rad) whose root has no heading, turned to yaw_rad.
+std::vector<Quat> pose_rotations(const Skeleton& skeleton, const Eigen::VectorXd& angles,
+                                 double yaw_rad);
+
+// The estimates as a motion in the world.
+Motion to_motion(const std::vector<PoseEstimate>& estimates, const Skeleton& skeleton,
+                 double rate_hz);
+
+}  // namespace sparse_mocap
