@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,9 +20,6 @@ struct SensorInput {
   Sensor sensor;
   SensorCorrection correction;
 };
-
-// Whether directions of gravity are averaged over the past alone, or over the whole take.
-enum class GravityAverage { causal, whole_take };
 
 struct ReadingSettings {
   double rate_hz = 25.0;
@@ -44,16 +42,17 @@ struct Arrival {
 //
 // A reading is given as soon as every channel of every sensor is known beyond the reach of the
 // low-pass, so that no later sample can change it: delay_s() after its time. A channel that stays
-// away for kLongestGap_s more no longer holds up the others; see resampler.hpp for silences.
+// away for Resampler::kLongestGap_s more no longer holds up the others; see Resampler for silences.
 // Directions of gravity over a whole take are known at its end alone, so flush() gives it all then.
 class ReadingStream {
  public:
-  // Throws std::invalid_argument without sensors, for a rate that is not positive, and for a
-  // correction that is not finite.
+  // Throws std::invalid_argument without sensors, for a sensor without channels, and for a rate
+  // that is not positive.
   ReadingStream(std::vector<SensorInput> sensors, const ReadingSettings& settings);
 
-  // A sample at its time on the common clock. False when all that is wanted of it was dropped: it
-  // is not finite, or not after the sensor's last. Readings begin with the first sample's time.
+  // A sample at its time on the common clock. False when nothing of it was taken: what is wanted
+  // is not finite, or not after the sensor's last. Readings begin with the first sample, even where
+  // that one tells nothing.
   bool push(int sensor, double time_s, const SensorSample& sample);
 
   // Samples of one sensor that arrived together, by the device's clock; the common clock is the
@@ -74,32 +73,39 @@ class ReadingStream {
   const std::vector<SensorInput>& sensors() const { return sensors_; }
 
  private:
-  struct State {
-    explicit State(const SensorInput& input);
-
+  struct ChannelState {
+    Channel channel;
+    Resampler resampler;
+  };
+  struct SensorState {
+    SensorCorrection correction;
     ClockModel clock;
     GravityDirectionFilter gravity_direction;
-    SensorRecording recording;  // corrected; kept for averages over the whole take
-    std::vector<Resampler> channels;
+    double last_s = -std::numeric_limits<double>::infinity();
+    std::vector<double> times_s;  // of all samples, for averages over the whole take
+    std::vector<Vec3> specific_force, angular_velocity;
+    std::vector<ChannelState> channels;
   };
 
-  std::vector<double> times_of(State& state, std::span<const Arrival> arrivals) const;
-  bool take_up(State& state, double time_s, const SensorSample& sample);
+  static SensorState state_of(const SensorInput& input);
+  Vec3 direction_of(SensorState& state, double time_s, const SensorSample& sample) const;
   void add_whole_take_directions();
   bool is_ready(double time_s, double now_s) const;
   Reading reading_at(double time_s, bool has_ended) const;
-  double next_time_s() const;
+  double next_time_s() const {
+    return *begin_s_ + static_cast<double>(num_given_) / settings_.rate_hz;
+  }
 
   std::vector<SensorInput> sensors_;
   ReadingSettings settings_;
-  std::vector<State> states_;
+  std::vector<SensorState> states_;
   std::optional<double> begin_s_;
-  double end_s_ = 0.0;
+  double end_s_ = -std::numeric_limits<double>::infinity();
   long long num_given_ = 0;
 };
 
 // The readings of a whole take, from its first sample to its last; a recording for each sensor.
-// Throws std::invalid_argument as above, and unless sizes agree.
+// Throws std::invalid_argument as the stream does, and unless there are as many sensors.
 std::vector<Reading> readings_of(std::span<const SensorRecording> take,
                                  std::vector<SensorInput> sensors, const ReadingSettings& settings);
 
