@@ -8,15 +8,15 @@
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/sensors/gravity.hpp"
 #include "sparse_mocap/sensors/mounting.hpp"
-#include "sparse_mocap/sensors/place.hpp"
+#include "sparse_mocap/sensors/position_along_bone.hpp"
 
 namespace sparse_mocap {
 namespace {
 
 constexpr double kTemplateHeight_m = 1.75;
-constexpr double kLargestPlaceDeviation = 0.08;
+constexpr double kLargestPositionDeviation = 0.08;
 constexpr double kSmallestExplained = 0.7;
-constexpr double kBeyondBone = 0.15;  // how far off the bone a place may come out
+constexpr double kBeyondBone = 0.15;  // how far off the bone a position may come out
 
 std::string number(const char* format, double value) {
   char text[64];
@@ -28,9 +28,10 @@ void check(const CalibrationSettings& settings) {
   if (!(settings.height_m >= 0.5 && settings.height_m <= 2.5))
     throw ConfigError("height_m is " + number("%g", settings.height_m) +
                       "; it must be from 0.5 to 2.5");
-  const double place = settings.default_place.value_or(1.0);
-  if (!(place >= 0.0 && place <= 1.0))
-    throw ConfigError("default_place is " + number("%g", place) + "; it must be from 0 to 1");
+  const double position = settings.default_position_along_bone.value_or(1.0);
+  if (!(position >= 0.0 && position <= 1.0))
+    throw ConfigError("the position along the bone is " + number("%g", position) +
+                      "; it must be from 0 to 1");
 }
 
 std::vector<ObservedTurn> observed_turns(const Site& site,
@@ -60,36 +61,38 @@ double bone_length_m(const Site& site, const CalibrationSettings& settings) {
   return template_bones()[carrier].norm() * settings.height_m / kTemplateHeight_m;
 }
 
-bool is_on_bone(double place) { return place >= -kBeyondBone && place <= 1.0 + kBeyondBone; }
+bool is_on_bone(double position) {
+  return position >= -kBeyondBone && position <= 1.0 + kBeyondBone;
+}
 
 // Who was asked to squat may have bent the knees backwards: the point that stayed still is then
 // another one that movements of this site leave still, the only one that puts the sensor on its
 // bone.
-double place_on_bone(const GuidedTurn& turn, double lever) {
-  if (is_on_bone(*turn.still_place + lever)) return *turn.still_place + lever;
+double position_on_bone(const GuidedTurn& turn, double lever) {
+  if (is_on_bone(*turn.still_position + lever)) return *turn.still_position + lever;
   for (const auto& movement : guided_movements()) {
     const GuidedTurn* other = turn_of(movement, turn.site);
-    if (other != nullptr && other->still_place && is_on_bone(*other->still_place + lever))
-      return *other->still_place + lever;
+    if (other != nullptr && other->still_position && is_on_bone(*other->still_position + lever))
+      return *other->still_position + lever;
   }
-  return *turn.still_place + lever;
+  return *turn.still_position + lever;
 }
 
-// The place that the most certain movement shows.
-void find_place(std::span<const ObservedTurn> turns, const Vec3& gyroscope_bias, double bone_m,
+// The position that the most certain movement shows.
+void find_position(std::span<const ObservedTurn> turns, const Vec3& gyroscope_bias, double bone_m,
                 SensorCalibration& out) {
   for (const auto& observed : turns) {
-    if (!observed.turn.still_place || !observed.recording.has_gyroscope()) continue;
+    if (!observed.turn.still_position || !observed.recording.has_gyroscope()) continue;
     const Lever lever =
         lever_from(in_site_axes(observed.recording, out.R_site_sensor, gyroscope_bias));
-    const double place = place_on_bone(observed.turn, lever.along_m / bone_m);
+    const double position = position_on_bone(observed.turn, lever.along_m / bone_m);
     const double deviation = lever.deviation_m / bone_m;
-    if (lever.explained < kSmallestExplained || !is_on_bone(place)) continue;
-    if (deviation >= out.place_deviation) continue;
-    out.place_deviation = deviation;
-    if (deviation > kLargestPlaceDeviation) continue;
-    out.place = std::clamp(place, 0.0, 1.0);
-    out.is_place_determined = true;
+    if (lever.explained < kSmallestExplained || !is_on_bone(position)) continue;
+    if (deviation >= out.position_deviation) continue;
+    out.position_deviation = deviation;
+    if (deviation > kLargestPositionDeviation) continue;
+    out.position_along_bone = std::clamp(position, 0.0, 1.0);
+    out.is_position_determined = true;
   }
 }
 
@@ -108,19 +111,19 @@ void note_what_is_missing(std::span<const ObservedTurn> turns, const Mounting& m
         "it turned " +
         number("%.0f", mounting.sweep_rad / kRadiansPerDegree) +
         " degrees, 8 are needed): taken as the site says; move more, about one axis");
-  if (calibration.is_place_determined) return;
+  if (calibration.is_position_determined) return;
   const bool has_gyroscope = std::any_of(turns.begin(), turns.end(), [](const ObservedTurn& turn) {
     return turn.recording.has_gyroscope();
   });
   notes.push_back(
-      std::string("the movements do not determine its place along the bone (") +
+      std::string("the movements do not determine its position along the bone (") +
       (has_gyroscope ? "no point of it stayed still long enough" : "that takes a gyroscope") +
-      "): taken as " + number("%.2f", calibration.place));
+      "): taken as " + number("%.2f", calibration.position_along_bone));
 }
 
 }  // namespace
 
-double typical_place(const Site& site) {
+double typical_position_along_bone(const Site& site) {
   using namespace standard_joint;
   return site.carrier == ltibia || site.carrier == rtibia ? 0.4 : 1.0;
 }
@@ -141,14 +144,14 @@ SensorCalibration calibrate_sensor(const Site& site, const SensorRecording& stan
   out.is_mounting_determined = mounting.is_determined;
   out.axis_ratio = mounting.axis_ratio;
   out.gyroscope_bias = gravity.gyroscope_bias;
-  out.place = settings.default_place.value_or(typical_place(site));
+  out.position_along_bone = settings.default_position_along_bone.value_or(typical_position_along_bone(site));
   if (mounting.is_determined)
-    find_place(turns, gravity.gyroscope_bias, bone_length_m(site, settings), out);
+    find_position(turns, gravity.gyroscope_bias, bone_length_m(site, settings), out);
   note_what_is_missing(turns, mounting, out, out.notes);
   const double still = std::exp(-gravity.unrest_mps2 / 0.5);
   const double mounted = mounting.is_determined ? 1.0 - 1.0 / mounting.axis_ratio : 0.0;
-  const double placed = out.is_place_determined ? 1.0 - out.place_deviation : 0.0;
-  out.quality = still * (0.2 + 0.5 * mounted + 0.3 * placed);
+  const double positioned = out.is_position_determined ? 1.0 - out.position_deviation : 0.0;
+  out.quality = still * (0.2 + 0.5 * mounted + 0.3 * positioned);
   return out;
 }
 

@@ -15,16 +15,16 @@ namespace sparse_mocap {
 struct SensorCalibration {
   double scale = 1.0;                     // readings times this are m/s^2
   Mat3 R_site_sensor = Mat3::Identity();  // applied after the scale
-  double place = 1.0;                     // along the site's bone, 0 at its pivot, 1 at its end
+  double position_along_bone = 1.0;       // 0 at the pivot of the site's bone, 1 at its end
   bool is_mounting_determined = false;
-  bool is_place_determined = false;
+  bool is_position_determined = false;
 
   Vec3 gyroscope_bias = Vec3::Zero();  // rad/s, sensor axes
 
   double gravity = 0.0;            // what the sensor read at rest, in its own unit
   double unrest_mps2 = 0.0;        // while the wearer stood
   double axis_ratio = 1.0;         // how clearly the movements show one axis; 1: not at all
-  double place_deviation = 1.0;    // standard deviation of place
+  double position_deviation = 1.0;  // standard deviation of position_along_bone
   double quality = 0.0;            // 0 (nothing is sure) to 1
   std::vector<std::string> notes;  // what could not be determined, why, and what to do
 };
@@ -36,20 +36,20 @@ struct RecordedMovement {
 };
 
 // Where sensors are strapped: 40 % of the way from knee to ankle, at the far end of other bones.
-double typical_place(const Site& site);
+double typical_position_along_bone(const Site& site);
 
 struct CalibrationSettings {
   StandingPose pose = StandingPose::arms_down;
   double height_m = 1.75;              // of the performer: scales the bones of a medium body
   std::optional<StandardBones> bones;  // the performer's own, where they are known
-  // Where the movements do not determine it; none: typical_place.
-  std::optional<double> default_place;
+  // Where the movements do not determine it; none: typical_position_along_bone.
+  std::optional<double> default_position_along_bone;
 };
 
 // Calibrates one sensor: scale and two angles of its mounting from gravity while the performer
-// stands, the third from the axis of guided movements, its place from the lever about the point
+// stands, the third from the axis of guided movements, its position along the bone from the lever about the point
 // that a movement leaves still. What the movements do not determine is left at its default and
-// named in notes. Throws ConfigError as standing_gravity does, and for a height or place that
+// named in notes. Throws ConfigError as standing_gravity does, and for a height or position that
 // cannot be.
 SensorCalibration calibrate_sensor(const Site& site, const SensorRecording& standing,
                                    std::span<const RecordedMovement> movements,

@@ -8,8 +8,8 @@
 namespace sparse_mocap {
 namespace {
 
-Eigen::VectorXd interpolated(std::span<const double> times_s, const Eigen::MatrixXd& values,
-                             double at_s) {
+Eigen::VectorXd interpolated(std::span<const double> times_s,
+                             const Eigen::Ref<const Eigen::MatrixXd>& values, double at_s) {
   const auto after = std::upper_bound(times_s.begin(), times_s.end(), at_s);
   if (after == times_s.begin()) return values.col(0);
   if (after == times_s.end()) return values.col(values.cols() - 1);
@@ -21,7 +21,8 @@ Eigen::VectorXd interpolated(std::span<const double> times_s, const Eigen::Matri
 
 }  // namespace
 
-Eigen::MatrixXd filtered_at(std::span<const double> times_s, const Eigen::MatrixXd& values,
+Eigen::MatrixXd filtered_at(std::span<const double> times_s,
+                            const Eigen::Ref<const Eigen::MatrixXd>& values,
                             std::span<const double> wanted_s, GaussianFilter filter) {
   if (times_s.empty() || static_cast<Eigen::Index>(times_s.size()) != values.cols())
     throw std::invalid_argument("filtered_at: one column of values for each time is needed");

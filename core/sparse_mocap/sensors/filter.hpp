@@ -24,7 +24,8 @@ inline constexpr GaussianFilter kReadingFilter{0.0115};  // 11.5 Hz, on readings
 // Values (rows x times) observed at times_s (ascending), low-passed and sampled at wanted_s.
 // Irregular times are fine. Where the kernel meets fewer than two samples, neighbours are
 // interpolated; beyond the ends the nearest sample holds.
-Eigen::MatrixXd filtered_at(std::span<const double> times_s, const Eigen::MatrixXd& values,
+Eigen::MatrixXd filtered_at(std::span<const double> times_s,
+                            const Eigen::Ref<const Eigen::MatrixXd>& values,
                             std::span<const double> wanted_s, GaussianFilter filter);
 
 }  // namespace sparse_mocap

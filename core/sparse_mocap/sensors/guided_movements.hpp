@@ -24,9 +24,9 @@ Vec3 up_while_standing(const Site& site, StandingPose pose);
 struct GuidedTurn {
   std::string_view site;
   Vec3 axis;  // unit, site axes: from hanging down (trunk: upright) the sensor first turns about it
-  // The place along the site's bone that stays where it is, as 0 is the bone's pivot and 1 its end
+  // The position along the site's bone that stays where it is, as 0 is the bone's pivot and 1 its end
   // (below 0: further up the limb); none when nothing does.
-  std::optional<double> still_place;
+  std::optional<double> still_position;
 };
 
 // A movement that the performer is asked to make about five times, starting from standing.

@@ -12,8 +12,8 @@ namespace sparse_mocap {
 
 // What a sensor at one site would read; 3 x frames each, in the sensor's axes.
 //
-// A rigid bone makes the specific force linear in the place along it, so the two ends determine
-// every place between them.
+// A rigid bone makes the specific force linear in the position along it, so the two ends determine
+// every position between them.
 struct VirtualReadings {
   Eigen::Matrix3Xd specific_force_pivot;  // m/s^2, at the carrier's pivot (elbow, knee)
   Eigen::Matrix3Xd specific_force_end;    // m/s^2, at the carrier's end (wrist, ankle)
@@ -21,9 +21,10 @@ struct VirtualReadings {
   Eigen::Matrix3Xd up;                    // unit, the direction against gravity
   std::vector<Mat3> R_world_sensor;
 
-  // m/s^2 at a place along the carrier, 0 at its pivot, 1 at its end.
-  Eigen::Matrix3Xd specific_force(double place) const {
-    return (1.0 - place) * specific_force_pivot + place * specific_force_end;
+  // m/s^2 at a position along the carrier, 0 at its pivot, 1 at its end.
+  Eigen::Matrix3Xd specific_force(double position_along_bone) const {
+    return (1.0 - position_along_bone) * specific_force_pivot +
+           position_along_bone * specific_force_end;
   }
 };
 

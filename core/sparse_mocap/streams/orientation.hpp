@@ -2,21 +2,18 @@
 #pragma once
 
 #include "sparse_mocap/base/conventions.hpp"
+#include "sparse_mocap/base/quaternions.hpp"
 #include "sparse_mocap/streams/sample.hpp"
 
 namespace sparse_mocap::streams {
 
-// Devices report rotations into worlds with z up or down, in which x is north or east. Which way
-// is north does not matter here, so such a world becomes the project's (y up) by exchanging axes:
-// what was x is then z, y is x, z is y.
+// Devices report rotations into worlds with z up or down, in which x is north or east.
 inline Eigen::Vector4d orientation_from_z_up(const Quat& R_device_world_sensor) {
-  const Quat q = Quat(0.5, -0.5, -0.5, -0.5) * R_device_world_sensor;
-  return {q.w(), q.x(), q.y(), q.z()};
+  return wxyz_of(kR_world_zup * R_device_world_sensor);
 }
 
 inline Quat z_up_from_orientation(const Eigen::Vector4d& orientation) {
-  return Quat(0.5, 0.5, 0.5, 0.5) *
-         Quat(orientation[0], orientation[1], orientation[2], orientation[3]);
+  return kR_world_zup.conjugate() * quaternion_of(orientation);
 }
 
 inline Eigen::Vector4d orientation_from_z_down(const Quat& R_device_world_sensor) {
@@ -30,8 +27,7 @@ inline Quat from_roll_pitch_yaw(double roll, double pitch, double yaw) {
 }
 
 inline Quat rotation_of(const Sample& sample) {
-  const auto& q = sample.orientation;
-  return Quat(q[0], q[1], q[2], q[3]).normalized();
+  return quaternion_of(sample.orientation).normalized();
 }
 
 // Puts back the gravity that a device took out, by the sample's own orientation.

@@ -9,12 +9,12 @@
 
 namespace sparse_mocap {
 
-// The direction against gravity in a sensor's axes, from accelerometer and gyroscope together.
+// The direction of gravity, as a unit vector against it (up), in a sensor's axes, from accelerometer and gyroscope together.
 //
 // The gyroscope carries along a frame that stays put in the world but for a slow drift. There the
 // wearer's own accelerations average out and gravity remains, as in the inclination step of VQF
 // (Laidig, Seel: Information Fusion 91, 2023). No magnetometer, hence no heading.
-class InclinationFilter {
+class GravityDirectionFilter {
  public:
   static constexpr double kTimeConstant_s = 3.0;  // of the average
   static constexpr double kUnsure_s = 0.5;        // after a beginning nothing has averaged out yet
@@ -25,7 +25,7 @@ class InclinationFilter {
   // without one may send zeros). A sample that is not finite is passed over, with NaN.
   Vec3 update(double time_s, const Vec3& specific_force, const Vec3& angular_velocity);
 
-  void reset() { *this = InclinationFilter(); }
+  void reset() { *this = GravityDirectionFilter(); }
 
  private:
   double last_s_ = std::numeric_limits<double>::quiet_NaN();
@@ -36,11 +36,12 @@ class InclinationFilter {
   Vec3 mean_ = Vec3::Zero();  // of the specific force, held frame
 };
 
-// The filter's answers to a whole recording. 3 x samples; all NaN when there is no gyroscope.
-Eigen::Matrix3Xd inclinations_online(const SensorRecording& recording);
+// Whether a sample's direction is averaged over the samples before it alone, as they can be had
+// live, or over those after it as well: surer at the beginning, and never unsure.
+enum class GravityAverage { causal, whole_take };
 
-// The same where each sample's average reaches both ways: surer at the beginning, and never unsure.
-// NaN where a sample is not finite, and everywhere when the gyroscope never turned.
-Eigen::Matrix3Xd inclinations_offline(const SensorRecording& recording);
+// The directions of a whole recording, 3 x samples. NaN where a sample is not finite, where the
+// causal filter is unsure, and everywhere when the gyroscope never turned or there is none.
+Eigen::Matrix3Xd gravity_directions(const SensorRecording& recording, GravityAverage average);
 
 }  // namespace sparse_mocap

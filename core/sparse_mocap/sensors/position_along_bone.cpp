@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/sensors/place.hpp"
+#include "sparse_mocap/sensors/position_along_bone.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/sensors/inclination.hpp"
+#include "sparse_mocap/readings/gravity_direction.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ Quat turned(const Quat& R_held_sensor, const Vec3& rate, double dt_s) {
   return (R_held_sensor * step).normalized();
 }
 
-bool is_next(double step_s) { return step_s > 0.0 && step_s <= InclinationFilter::kLongestGap_s; }
+bool is_next(double step_s) { return step_s > 0.0 && step_s <= GravityDirectionFilter::kLongestGap_s; }
 
 // A sample of a stretch without gaps, turned into its held frame.
 struct Held {
@@ -51,9 +51,51 @@ void finish(const std::vector<Held>& stretch, Eigen::Matrix3Xd& out) {
   }
 }
 
+Eigen::Matrix3Xd causal_directions(const SensorRecording& recording) {
+  Eigen::Matrix3Xd out = kUnknown.replicate(1, recording.num_samples());
+  GravityDirectionFilter filter;
+  for (Eigen::Index t = 0; recording.has_gyroscope() && t < recording.num_samples(); ++t)
+    out.col(t) = filter.update(recording.times_s[static_cast<std::size_t>(t)],
+                               recording.specific_force.col(t), recording.angular_velocity.col(t));
+  return out;
+}
+
+Eigen::Matrix3Xd whole_take_directions(const SensorRecording& recording) {
+  const auto& times_s = recording.times_s;
+  const auto& forces = recording.specific_force;
+  const auto& rates = recording.angular_velocity;
+  Eigen::Matrix3Xd out = kUnknown.replicate(1, recording.num_samples());
+  if (!recording.has_gyroscope()) return out;
+  std::vector<Held> stretch;
+  bool has_turned = false;
+  for (Eigen::Index t = 0; t < recording.num_samples(); ++t) {
+    if (!forces.col(t).allFinite() || !rates.col(t).allFinite()) continue;
+    has_turned = has_turned || rates.col(t) != Vec3::Zero();
+    Held held{t, Quat::Identity(), Vec3::Zero(), 0.0};
+    if (!stretch.empty()) {
+      const Held& last = stretch.back();
+      const double dt_s =
+          times_s[static_cast<std::size_t>(t)] - times_s[static_cast<std::size_t>(last.at)];
+      if (is_next(dt_s)) {
+        const Vec3 rate = 0.5 * (rates.col(last.at) + rates.col(t));
+        held.R_held_sensor = turned(last.R_held_sensor, rate, dt_s);
+        held.decay = std::exp(-dt_s / GravityDirectionFilter::kTimeConstant_s);
+      } else {
+        finish(stretch, out);
+        stretch.clear();
+      }
+    }
+    held.force = held.R_held_sensor * forces.col(t);
+    stretch.push_back(held);
+  }
+  finish(stretch, out);
+  if (!has_turned) out.setConstant(std::numeric_limits<double>::quiet_NaN());
+  return out;
+}
+
 }  // namespace
 
-Vec3 InclinationFilter::update(double time_s, const Vec3& specific_force,
+Vec3 GravityDirectionFilter::update(double time_s, const Vec3& specific_force,
                                const Vec3& angular_velocity) {
   if (!std::isfinite(time_s) || !specific_force.allFinite() || !angular_velocity.allFinite())
     return kUnknown;
@@ -77,44 +119,9 @@ Vec3 InclinationFilter::update(double time_s, const Vec3& specific_force,
   return R_held_sensor_.conjugate() * mean_.normalized();
 }
 
-Eigen::Matrix3Xd inclinations_online(const SensorRecording& recording) {
-  Eigen::Matrix3Xd out = kUnknown.replicate(1, recording.num_samples());
-  InclinationFilter filter;
-  for (Eigen::Index t = 0; recording.has_gyroscope() && t < recording.num_samples(); ++t)
-    out.col(t) = filter.update(recording.times_s[static_cast<std::size_t>(t)],
-                               recording.specific_force.col(t), recording.angular_velocity.col(t));
-  return out;
-}
-
-Eigen::Matrix3Xd inclinations_offline(const SensorRecording& recording) {
-  const auto& [times_s, forces, rates] = recording;
-  Eigen::Matrix3Xd out = kUnknown.replicate(1, recording.num_samples());
-  if (!recording.has_gyroscope()) return out;
-  std::vector<Held> stretch;
-  bool has_turned = false;
-  for (Eigen::Index t = 0; t < recording.num_samples(); ++t) {
-    if (!forces.col(t).allFinite() || !rates.col(t).allFinite()) continue;
-    has_turned = has_turned || rates.col(t) != Vec3::Zero();
-    Held held{t, Quat::Identity(), Vec3::Zero(), 0.0};
-    if (!stretch.empty()) {
-      const Held& last = stretch.back();
-      const double dt_s =
-          times_s[static_cast<std::size_t>(t)] - times_s[static_cast<std::size_t>(last.at)];
-      if (is_next(dt_s)) {
-        const Vec3 rate = 0.5 * (rates.col(last.at) + rates.col(t));
-        held.R_held_sensor = turned(last.R_held_sensor, rate, dt_s);
-        held.decay = std::exp(-dt_s / InclinationFilter::kTimeConstant_s);
-      } else {
-        finish(stretch, out);
-        stretch.clear();
-      }
-    }
-    held.force = held.R_held_sensor * forces.col(t);
-    stretch.push_back(held);
-  }
-  finish(stretch, out);
-  if (!has_turned) out.setConstant(std::numeric_limits<double>::quiet_NaN());
-  return out;
+Eigen::Matrix3Xd gravity_directions(const SensorRecording& recording, GravityAverage average) {
+  return average == GravityAverage::causal ? causal_directions(recording)
+                                           : whole_take_directions(recording);
 }
 
 }  // namespace sparse_mocap
