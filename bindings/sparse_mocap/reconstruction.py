@@ -1,119 +1,183 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a reconstruction says about itself: how late, how sure, and what it leans on."""
+"""From what sensors measured to full-body motion: whole takes, and live."""
 
 from __future__ import annotations
 
-from collections import Counter
-from typing import Any
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from . import FILTER_REACH_S, GRAVITY_MPS2, Clip, MotionDatabase, Reconstruction, Reconstructor
+from . import _core
+from ._core import Model, MotionDatabase, PoseEstimate, Reconstruction, Skeleton
+from .calibration import Calibration, sensor_inputs
+from .methods import option_values
+from .readings import channels_in, push_samples
 from .take import Take
 
-Floats = NDArray[np.float64]
+if TYPE_CHECKING:
+    from .capture.sample_log import Samples
 
-LARGEST_MISFIT = 0.78
-"""As a part of how much the readings vary.
+Progress = Callable[[int, int, str], bool | None]
 
-Of HDM05 and CMU clips reconstructed from other people's or other motions, two in three of those
-that came out worse than a constant pose are above it, and one in eight of the better ones.
-"""
-
-_FASTEST_RADPS = 15.0  # on median; nobody turns a limb so fast for long
-_QUIET_MPS2 = 1.0  # readings that vary less than this fit anything
+__all__ = ["LiveReconstructor", "reconstruct"]
 
 
-def latency_ms(reconstructor: Reconstructor, database: MotionDatabase) -> float:
-    """Returns how late an online estimate is: the method's look-ahead and the filter's."""
-    return 1000.0 * (reconstructor.latency_frames / database.rate_hz + FILTER_REACH_S)
+def reconstruct(
+    take: Take,
+    database: MotionDatabase | str | os.PathLike[str] | None = None,
+    *,
+    best_quality: bool = False,
+    method: str | None = None,
+    preset: str | None = None,
+    options: Mapping[str, Any] | None = None,
+    calibration: Calibration | None = None,
+    positions_along_bone: Mapping[str, float] | None = None,
+    use_gyroscopes: bool = True,
+    model: Model | None = None,
+    body: Skeleton | None = None,
+    excluded_clips: Sequence[int] = (),
+    tracker_yaw_rad: float = 0.0,
+    tracker_origin_m: Sequence[float] = (0.0, 0.0, 0.0),
+    progress: Progress | None = None,
+) -> Reconstruction:
+    """Returns the motion of a take, with what the method says about it.
 
+    best_quality: every pose may depend on the whole take; otherwise poses are as they would be
+    live. method, preset and options are those that ``methods()`` lists; None is the default.
+    calibration says how the take's sensors are worn, without one they sit as their names say, at
+    the ends of their bones; positions_along_bone (by site, 0 to 1) win over it. model and body are
+    for methods that need one. Clips in excluded_clips (indices) are treated as if the database did
+    not have them. tracker_* say where the world of orientations and positions stands: yaw about
+    the vertical (rad) and origin (m). progress(done, total, what) cancels by returning False.
 
-def mean_misfit_mps2(solved: Reconstruction) -> float:
-    """Returns how far retrieved readings are from measured ones, over sensors and frames."""
-    return _mean(np.asarray(solved.sensor_misfit_mps2))
-
-
-def relative_misfit(solved: Reconstruction, readings: Floats) -> float:
-    """Returns the misfit as a part of how much the readings (T, S, 3) vary; 0 is a perfect fit."""
-    variation: list[float] = []
-    for sensor in np.moveaxis(readings, 1, 0):
-        heard = sensor[np.isfinite(sensor).all(axis=1)]
-        variation.extend(np.linalg.norm(heard - heard.mean(axis=0), axis=1) if len(heard) else ())
-    return mean_misfit_mps2(solved) / max(float(np.mean(variation or [0.0])), _QUIET_MPS2)
-
-
-def is_unlike_the_database(solved: Reconstruction, readings: Floats) -> bool:
-    """Whether the database holds nothing like the performance, so that the result is a guess."""
-    return relative_misfit(solved, readings) > LARGEST_MISFIT
-
-
-def suspicions(take: Take) -> list[str]:
-    """Returns a line for each sensor whose readings can hardly be in m/s^2 and rad/s."""
-    lines = []
-    for site, record in take.sensors.items():
-        size = float(np.median(np.linalg.norm(record.specific_force, axis=1)))
-        if not 0.6 * GRAVITY_MPS2 < size < 10 * GRAVITY_MPS2:
-            lines.append(
-                f"{site} reads {size:.2f} m/s^2 on median, where gravity alone is "
-                f"{GRAVITY_MPS2:.2f}; ax,ay,az are in m/s^2 and include gravity"
-            )
-        elif np.ptp(record.specific_force, axis=0).max() == 0:
-            lines.append(f"{site} always reads the same")
-        if record.angular_velocity is not None:
-            turn = float(np.median(np.linalg.norm(record.angular_velocity, axis=1)))
-            if turn > _FASTEST_RADPS:
-                lines.append(
-                    f"{site} turns at {turn:.0f} rad/s on median; gx,gy,gz are in rad/s, and "
-                    "--no-gyroscopes leaves them out"
-                )
-    return lines
-
-
-def report(
-    database: MotionDatabase,
-    sites: list[str],
-    times_s: Floats,
-    readings: Floats,
-    solved: Reconstruction,
-) -> dict[str, Any]:
-    """Returns, as JSON has it, what the reconstruction says of the whole take and each frame."""
-    names = [_full_name(clip) for clip in database.clips]
-    leant_on = [names[index] for index in np.asarray(solved.clips).tolist()]
-    misfit, spread = np.asarray(solved.sensor_misfit_mps2), np.asarray(solved.spread_m)
-    frames = [
-        {
-            "time_s": round(time, 6),
-            "misfit_mps2": [_rounded(value) for value in row],
-            "spread_m": _rounded(float(np.mean(at))),
-            "clip": clip,
-        }
-        for time, row, at, clip in zip(
-            times_s.tolist(), misfit.tolist(), spread, leant_on, strict=True
+    Raises ConfigError in one line for what does not fit together, CalibrationError for a sensor
+    without a calibration, and Cancelled.
+    """
+    request = _request(
+        database,
+        method=method,
+        preset=preset,
+        options=options,
+        model=model,
+        body=body,
+        excluded_clips=excluded_clips,
+        tracker_yaw_rad=tracker_yaw_rad,
+        tracker_origin_m=tracker_origin_m,
+    )
+    records = list(take.sensors.values())
+    channels = [_used(channels_in(record), use_gyroscopes) for record in records]
+    inputs = sensor_inputs(calibration, take.sites, channels, positions_along_bone)
+    recordings = [
+        _core.SensorRecording(
+            record.times_s,
+            record.specific_force,
+            record.angular_velocity,
+            record.position,
+            record.orientation,
         )
+        for record in records
     ]
-    return {
-        "sites": sites,
-        "relative_misfit": _rounded(relative_misfit(solved, readings)),
-        "is_unlike_the_database": is_unlike_the_database(solved, readings),
-        "mean_misfit_mps2": _rounded(_mean(misfit)),
-        "mean_spread_m": _rounded(_mean(spread)),
-        "clips": dict(Counter(leant_on).most_common()),
-        "frames": frames,
-    }
+    return _core.reconstruct(
+        recordings, inputs, request, best_quality=best_quality, progress=progress
+    )
 
 
-def _full_name(clip: Clip) -> str:
-    copies = [" mirrored"] * clip.is_mirrored + [" reversed"] * clip.is_reversed
-    copies += [f" at tempo {clip.tempo:g}"] * (clip.tempo != 1.0)
-    return clip.name + "".join(copies)
+class LiveReconstructor:
+    """Reconstructs a performance as its samples come; use it from one thread."""
+
+    def __init__(
+        self,
+        sensors: Mapping[int, str],
+        channels: Sequence[Sequence[str]],
+        database: MotionDatabase | str | os.PathLike[str] | None = None,
+        *,
+        method: str | None = None,
+        preset: str | None = None,
+        options: Mapping[str, Any] | None = None,
+        calibration: Calibration | None = None,
+        use_gyroscopes: bool = True,
+        model: Model | None = None,
+        body: Skeleton | None = None,
+        tracker_yaw_rad: float = 0.0,
+        tracker_origin_m: Sequence[float] = (0.0, 0.0, 0.0),
+        largest_backlog: int = 0,
+    ) -> None:
+        """Takes the capture's numbers of the sensors and their names, and what each measures.
+
+        Without a calibration the names are sites. channels (of CHANNEL_NAMES) come in the order of
+        sensors. largest_backlog: of more readings than this that wait only the newest is used, so
+        that a slow machine stays in time; 0: all are. The rest is as in reconstruct(). Raises
+        ConfigError and CalibrationError.
+        """
+        request = _request(
+            database,
+            method=method,
+            preset=preset,
+            options=options,
+            model=model,
+            body=body,
+            tracker_yaw_rad=tracker_yaw_rad,
+            tracker_origin_m=tracker_origin_m,
+        )
+        used = [_used(measured, use_gyroscopes) for measured in channels]
+        inputs = sensor_inputs(calibration, list(sensors.values()), used)
+        self._numbers = list(sensors)
+        self._live = _core.LiveReconstructor(inputs, request, largest_backlog=largest_backlog)
+
+    def push(self, samples: Samples) -> None:
+        """Takes samples as the sample log has them."""
+        push_samples(self._live.readings, self._numbers, samples)
+
+    def advance(self, now_s: float) -> list[PoseEstimate]:
+        """Returns the poses that can be had by now, on the machine's monotonic clock."""
+        return list(self._live.advance(now_s))
+
+    def flush(self) -> list[PoseEstimate]:
+        """Returns the remaining poses, when the performance ends."""
+        return list(self._live.flush())
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """The skeleton of the poses."""
+        return self._live.skeleton
+
+    @property
+    def rate_hz(self) -> float:
+        """Poses a second."""
+        return self._live.rate_hz
+
+    @property
+    def latency_s(self) -> float:
+        """How long after its reading a pose is ready."""
+        return self._live.latency_s
+
+    @property
+    def num_skipped(self) -> int:
+        """Readings that came faster than poses could be made of them."""
+        return self._live.num_skipped
 
 
-def _mean(values: Floats) -> float:
-    finite = values[np.isfinite(values)]
-    return float(finite.mean()) if finite.size else 0.0
+def _request(
+    database: MotionDatabase | str | os.PathLike[str] | None,
+    *,
+    method: str | None,
+    preset: str | None,
+    options: Mapping[str, Any] | None,
+    **rest: Any,
+) -> _core.ReconstructionRequest:
+    if database is not None and not isinstance(database, MotionDatabase):
+        database = MotionDatabase(database)
+    rest["excluded_clips"] = list(rest.get("excluded_clips", ()))
+    return _core.ReconstructionRequest(
+        method=method or "",
+        preset=preset or "",
+        options=option_values(options or {}),
+        database=database,
+        **rest,
+    )
 
 
-def _rounded(value: float) -> float | None:
-    return round(value, 4) if np.isfinite(value) else None
+def _used(channels: Sequence[str], use_gyroscopes: bool) -> list[str]:
+    if use_gyroscopes:
+        return list(channels)
+    return [name for name in channels if name not in ("angular_velocity", "gravity_direction")]

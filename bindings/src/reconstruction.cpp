@@ -1,262 +1,194 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <string>
+
 #include "common.hpp"
-#include "sparse_mocap/methods/baselines.hpp"
-#include "sparse_mocap/methods/registry.hpp"
-#include "sparse_mocap/sensors/sites.hpp"
+#include "methods.hpp"
+#include "readings.hpp"
+#include "sparse_mocap/methods/reconstruct.hpp"
+#include "sparse_mocap/motion/heading.hpp"
 
 namespace sparse_mocap::python {
 namespace {
 
-using Database = std::shared_ptr<MotionDatabase>;
+// One estimate and the skeleton that its rotations belong to.
+struct BoundEstimate {
+  PoseEstimate estimate;
+  std::shared_ptr<const Skeleton> skeleton;
+};
 
-py::array_t<double> to_array(const Eigen::VectorXd& values, const std::vector<py::ssize_t>& shape) {
-  auto out = new_array(shape);
+py::array_t<double> rotations_of(const PoseEstimate& estimate) {
+  auto out = new_array({static_cast<py::ssize_t>(estimate.rotations.size()), 4});
+  double* value = out.mutable_data();
+  for (const Quat& q : estimate.rotations)
+    for (const double v : {q.w(), q.x(), q.y(), q.z()}) *value++ = v;
+  return out;
+}
+
+py::array_t<double> heading_positions(const BoundEstimate& bound) {
+  const Motion motion = to_motion({bound.estimate}, *bound.skeleton, 1.0);
+  const Eigen::MatrixXd column = joint_positions(motion, PositionFrame::heading);
+  auto out = new_array({column.rows() / 3, 3});
+  std::copy(column.data(), column.data() + column.size(), out.mutable_data());
+  return out;
+}
+
+py::array_t<double> vector_of(const Eigen::VectorXd& values) {
+  auto out = new_array({values.size()});
   std::copy(values.data(), values.data() + values.size(), out.mutable_data());
   return out;
 }
 
-// One estimate and the skeleton that its angles belong to.
-struct BoundEstimate {
-  PoseEstimate estimate;
-  Database database;
-
-  py::array_t<double> rotations() const {
-    const auto quaternions = joint_rotations(estimate, database->skeleton());
-    auto out = new_array({static_cast<py::ssize_t>(quaternions.size()), 4});
-    double* value = out.mutable_data();
-    for (const Quat& q : quaternions)
-      for (const double v : {q.w(), q.x(), q.y(), q.z()}) *value++ = v;
-    return out;
-  }
-};
-
-struct Reconstruction {
-  std::vector<PoseEstimate> estimates;
-  Database database;
-
-  // One row an estimate.
-  py::array_t<double> stacked(Eigen::VectorXd PoseEstimate::*member,
-                              std::vector<py::ssize_t> row_shape) const {
-    row_shape.insert(row_shape.begin(), static_cast<py::ssize_t>(estimates.size()));
-    auto out = new_array(row_shape);
-    double* value = out.mutable_data();
-    for (const auto& estimate : estimates) {
-      const Eigen::VectorXd& row = estimate.*member;
-      value = std::copy(row.data(), row.data() + row.size(), value);
-    }
-    return out;
-  }
-  py::array_t<std::int64_t> indices(int PoseEstimate::*member) const {
-    py::array_t<std::int64_t> out(static_cast<py::ssize_t>(estimates.size()));
-    for (std::size_t t = 0; t < estimates.size(); ++t)
-      out.mutable_at(static_cast<py::ssize_t>(t)) = estimates[t].*member;
-    return out;
-  }
-};
-
-// A method with the database and sensors that it was made for.
-class BoundReconstructor {
- public:
-  BoundReconstructor(Database database, const std::vector<std::string>& sites,
-                     const std::string& method, const std::string& preset,
-                     const std::optional<std::vector<double>>& places,
-                     const std::optional<std::vector<std::string>>& quantities,
-                     const std::vector<int>& excluded_clips)
-      : database_(std::move(database)), num_sensors_(sites.size()) {
-    const auto sensors = sensors_from(sites, places, quantities);
-    const py::gil_scoped_release release;
-    method_ = make_method(method, preset, database_, sensors, excluded_clips);
-  }
-
-  int latency_frames() const { return method_->latency_frames(); }
-  void reset() { method_->reset(); }
-
-  std::optional<BoundEstimate> step(const Doubles& specific_force) {
-    require_shape(specific_force, {static_cast<py::ssize_t>(num_sensors_), 3}, "specific_force");
-    // Row-major S x 3 is column-major 3 x S.
-    const Reading reading = Eigen::Map<const Reading>(specific_force.data(), 3,
-                                                      static_cast<Eigen::Index>(num_sensors_));
-    std::optional<PoseEstimate> estimate;
-    {
-      const py::gil_scoped_release release;
-      estimate = method_->step(reading);
-    }
-    if (!estimate) return std::nullopt;
-    return BoundEstimate{std::move(*estimate), database_};
-  }
-
-  std::vector<BoundEstimate> flush() {
-    std::vector<PoseEstimate> owed;
-    {
-      const py::gil_scoped_release release;
-      owed = method_->flush();
-    }
-    std::vector<BoundEstimate> bound;
-    for (auto& estimate : owed) bound.push_back({std::move(estimate), database_});
-    return bound;
-  }
-
-  Reconstruction solve(const Doubles& specific_force, bool offline,
-                       const std::optional<py::function>& callback) {
-    const auto take = readings_from(specific_force, num_sensors_);
-    const Progress progress = progress_from(callback);
-    const py::gil_scoped_release release;
-    return {offline ? method_->solve(take, progress) : solve_online(*method_, take, progress),
-            database_};
-  }
-
- private:
-  Database database_;
-  std::size_t num_sensors_;
-  std::unique_ptr<Method> method_;
-};
-
-std::vector<std::string> as_strings(const std::vector<std::string_view>& names) {
-  return {names.begin(), names.end()};
-}
-
-// Runs work, which must not touch Python, and gives its result to NumPy.
-template <typename Work>
-py::array_t<std::int64_t> without_gil(const Work& work) {
-  std::vector<int> values;
-  {
-    const py::gil_scoped_release release;
-    values = work();
-  }
-  py::array_t<std::int64_t> out(static_cast<py::ssize_t>(values.size()));
-  std::copy(values.begin(), values.end(), out.mutable_data());
+py::dict diagnostics_of(const PoseEstimate& estimate) {
+  py::dict out;
+  for (const auto& [name, values] : estimate.diagnostics) out[name.c_str()] = vector_of(values);
   return out;
 }
 
-void bind_estimates(py::module_& m) {
-  py::class_<BoundEstimate>(m, "PoseEstimate")
-      .def_property_readonly("angles",
-                             [](const BoundEstimate& b) {
-                               return to_array(b.estimate.angles, {b.estimate.angles.size()});
-                             })
-      .def_property_readonly(
-          "positions",
-          [](const BoundEstimate& b) {
-            return to_array(b.estimate.positions, {b.estimate.positions.size() / 3, 3});
-          })
-      .def_property_readonly("rotations", &BoundEstimate::rotations)
-      .def_property_readonly(
-          "root_position",
-          [](const BoundEstimate& b) { return to_array(b.estimate.root_position, {3}); })
-      .def_property_readonly("yaw_rad", [](const BoundEstimate& b) { return b.estimate.yaw_rad; })
-      .def_property_readonly(
-          "contacts", [](const BoundEstimate& b) { return to_array(b.estimate.contacts, {2}); })
-      .def_property_readonly("spread_m",
-                             [](const BoundEstimate& b) {
-                               return to_array(b.estimate.spread_m, {b.estimate.spread_m.size()});
-                             })
-      .def_property_readonly("sensor_misfit_mps2",
-                             [](const BoundEstimate& b) {
-                               return to_array(b.estimate.sensor_misfit_mps2,
-                                               {b.estimate.sensor_misfit_mps2.size()});
-                             })
-      .def_property_readonly("clip", [](const BoundEstimate& b) { return b.estimate.clip; })
-      .def_property_readonly("database_frame",
-                             [](const BoundEstimate& b) { return b.estimate.database_frame; });
-
-  py::class_<Reconstruction>(m, "Reconstruction")
-      .def_property_readonly("motion",
-                             [](const Reconstruction& r) {
-                               return to_motion(r.estimates, r.database->skeleton(),
-                                                r.database->rate_hz());
-                             })
-      .def_property_readonly("angles",
-                             [](const Reconstruction& r) {
-                               return r.stacked(&PoseEstimate::angles, {kNumStandardAngles});
-                             })
-      .def_property_readonly("positions",
-                             [](const Reconstruction& r) {
-                               return r.stacked(&PoseEstimate::positions, {kNumStandardJoints, 3});
-                             })
-      .def_property_readonly(
-          "contacts",
-          [](const Reconstruction& r) {
-            auto out = new_array({static_cast<py::ssize_t>(r.estimates.size()), 2});
-            double* value = out.mutable_data();
-            for (const auto& e : r.estimates)
-              value = std::copy(e.contacts.data(), e.contacts.data() + 2, value);
-            return out;
-          })
-      .def_property_readonly("spread_m",
-                             [](const Reconstruction& r) {
-                               return r.stacked(&PoseEstimate::spread_m, {kNumStandardJoints});
-                             })
-      .def_property_readonly(
-          "sensor_misfit_mps2",
-          [](const Reconstruction& r) {
-            const py::ssize_t sensors =
-                r.estimates.empty() ? 0 : r.estimates.front().sensor_misfit_mps2.size();
-            return r.stacked(&PoseEstimate::sensor_misfit_mps2, {sensors});
-          })
-      .def_property_readonly("clips",
-                             [](const Reconstruction& r) { return r.indices(&PoseEstimate::clip); })
-      .def_property_readonly("database_frames", [](const Reconstruction& r) {
-        return r.indices(&PoseEstimate::database_frame);
-      });
+// Of the whole take: name to (T, N), what a frame lacks being NaN.
+py::dict stacked_diagnostics(const Reconstruction& solved) {
+  std::map<std::string, Eigen::Index> widths;
+  for (const auto& estimate : solved.estimates)
+    for (const auto& [name, values] : estimate.diagnostics)
+      widths[name] = std::max(widths[name], values.size());
+  py::dict out;
+  for (const auto& [name, width] : widths) {
+    auto rows = new_array({static_cast<py::ssize_t>(solved.estimates.size()), width});
+    std::fill(rows.mutable_data(), rows.mutable_data() + rows.size(), std::nan(""));
+    double* row = rows.mutable_data();
+    for (const auto& estimate : solved.estimates) {
+      const auto found = estimate.diagnostics.find(name);
+      if (found != estimate.diagnostics.end())
+        std::copy(found->second.data(), found->second.data() + found->second.size(), row);
+      row += width;
+    }
+    out[name.c_str()] = rows;
+  }
+  return out;
 }
 
-void bind_baselines(py::module_& m) {
-  m.def(
-      "playback_best_path",
-      [](const Database& database, const std::vector<std::string>& sites,
-         const Doubles& specific_force, const std::vector<int>& excluded_clips) {
-        const auto take = readings_from(specific_force, sites.size());
-        const auto sensors = sensors_from(sites, std::nullopt);
-        return without_gil(
-            [&] { return playback_best_path(*database, sensors, take, excluded_clips); });
-      },
-      py::arg("database"), py::arg("sites"), py::arg("specific_force"),
-      py::arg("excluded_clips") = std::vector<int>{});
-  m.def(
-      "nearest_windows",
-      [](const Database& database, const std::vector<std::string>& sites,
-         const Doubles& specific_force, int window, const std::vector<int>& excluded_clips) {
-        const auto take = readings_from(specific_force, sites.size());
-        const auto sensors = sensors_from(sites, std::nullopt);
-        return without_gil(
-            [&] { return nearest_windows(*database, sensors, take, window, excluded_clips); });
-      },
-      py::arg("database"), py::arg("sites"), py::arg("specific_force"), py::arg("window") = 10,
-      py::arg("excluded_clips") = std::vector<int>{});
-  m.def(
-      "nearest_poses",
-      [](const Database& database, const Doubles& positions,
-         const std::vector<int>& excluded_clips) {
-        require_shape(positions, {-1, kNumStandardJoints, 3}, "positions");
-        const Eigen::MatrixXd columns = Eigen::Map<const Eigen::MatrixXd>(
-            positions.data(), 3 * kNumStandardJoints, positions.shape(0));
-        return without_gil([&] { return nearest_poses(*database, columns, excluded_clips); });
-      },
-      py::arg("database"), py::arg("positions"), py::arg("excluded_clips") = std::vector<int>{});
+std::vector<BoundEstimate> bound(std::vector<PoseEstimate> estimates,
+                                 const std::shared_ptr<const Skeleton>& skeleton) {
+  std::vector<BoundEstimate> out;
+  for (auto& estimate : estimates) out.push_back({std::move(estimate), skeleton});
+  return out;
+}
+
+// The live reconstructor with its skeleton in a place of its own, so that estimates outlive it.
+class BoundLive {
+ public:
+  BoundLive(const std::vector<SensorInput>& sensors, const ReconstructionRequest& request,
+            int largest_backlog)
+      : live_(sensors, request, largest_backlog),
+        skeleton_(std::make_shared<const Skeleton>(live_.skeleton())) {}
+
+  LiveReconstructor& live() { return live_; }
+  std::vector<BoundEstimate> advance(double now_s) { return bound(live_.advance(now_s), skeleton_); }
+  std::vector<BoundEstimate> flush() { return bound(live_.flush(), skeleton_); }
+  const Skeleton& skeleton() const { return *skeleton_; }
+
+ private:
+  LiveReconstructor live_;
+  std::shared_ptr<const Skeleton> skeleton_;
+};
+
+py::array_t<double> contacts_of(const Reconstruction& solved) {
+  auto out = new_array({static_cast<py::ssize_t>(solved.estimates.size()), 2});
+  double* value = out.mutable_data();
+  for (const auto& estimate : solved.estimates)
+    value = std::copy(estimate.contacts.data(), estimate.contacts.data() + 2, value);
+  return out;
+}
+
+void bind_values(py::module_& m) {
+  py::class_<BoundEstimate>(m, "PoseEstimate", "One reconstructed frame.")
+      .def_property_readonly(
+          "time_s", [](const BoundEstimate& b) { return b.estimate.time_s; },
+          "When the sensors read it, s.")
+      .def_property_readonly(
+          "rotations", [](const BoundEstimate& b) { return rotations_of(b.estimate); },
+          "(J, 4) w x y z: each joint relative to its parent, the root in the world.")
+      .def_property_readonly(
+          "root_position",
+          [](const BoundEstimate& b) { return vector_of(b.estimate.root_position); },
+          "(3,) m, world.")
+      .def_property_readonly("positions", &heading_positions,
+                             "(J, 3) m: the joints in the heading frame.")
+      .def_property_readonly(
+          "contacts", [](const BoundEstimate& b) { return vector_of(b.estimate.contacts); },
+          "(2,) probability that the left and the right foot stand.")
+      .def_property_readonly(
+          "diagnostics", [](const BoundEstimate& b) { return diagnostics_of(b.estimate); },
+          "What the method says of the frame: name to array, units in the names.");
+
+  py::class_<Reconstruction>(m, "Reconstruction", "A reconstructed take: T frames, J joints.")
+      .def_property_readonly("motion", &Reconstruction::motion,
+                             "The motion in the world, on the method's skeleton.")
+      .def_property_readonly(
+          "readings",
+          [](const Reconstruction& r) { return Readings{r.sensors, r.readings}; },
+          "What the method was given, at its rate.")
+      .def_readonly("rate_hz", &Reconstruction::rate_hz, "Frames a second.")
+      .def_readonly("latency_s", &Reconstruction::latency_s,
+                    "How long after its reading a live pose is ready, s; None for best quality.")
+      .def_property_readonly("contacts", &contacts_of,
+                             "(T, 2) probability that the left and the right foot stand.")
+      .def_property_readonly("diagnostics", &stacked_diagnostics,
+                             "What the method says of each frame: name to (T, N), units in the "
+                             "names.");
+}
+
+void bind_live(py::module_& m) {
+  py::class_<BoundLive>(m, "LiveReconstructor",
+                        "Sensors' samples to poses as they come; use it from one thread.")
+      .def(py::init([](const std::vector<SensorInput>& sensors,
+                       const ReconstructionRequest& request, int largest_backlog) {
+             const py::gil_scoped_release release;
+             return std::make_unique<BoundLive>(sensors, request, largest_backlog);
+           }),
+           py::arg("sensors"), py::arg("request"), py::kw_only(), py::arg("largest_backlog") = 0)
+      .def_property_readonly(
+          "readings", [](BoundLive& b) -> ReadingStream& { return b.live().readings(); },
+          py::return_value_policy::reference_internal,
+          "The stream that takes the sensors' samples.")
+      .def("advance", &BoundLive::advance, py::arg("now_s"),
+           py::call_guard<py::gil_scoped_release>(),
+           "Returns the poses that can be had by now, on the clock of the samples.")
+      .def("flush", &BoundLive::flush, py::call_guard<py::gil_scoped_release>(),
+           "Returns the remaining poses, when the performance ends.")
+      .def_property_readonly("skeleton", &BoundLive::skeleton, "The skeleton of the poses.")
+      .def_property_readonly(
+          "rate_hz", [](BoundLive& b) { return b.live().rate_hz(); }, "Poses a second.")
+      .def_property_readonly(
+          "latency_s", [](BoundLive& b) { return b.live().latency_s(); },
+          "How long after its reading a pose is ready, s.")
+      .def_property_readonly(
+          "history_s", [](BoundLive& b) { return b.live().history_s(); },
+          "How far back the readings of a pose reach, s.")
+      .def_property_readonly(
+          "num_skipped", [](BoundLive& b) { return b.live().num_skipped(); },
+          "Readings that came faster than poses could be made of them.");
+}
+
+Reconstruction reconstruct_take(const std::vector<SensorRecording>& take,
+                                const std::vector<SensorInput>& sensors,
+                                const ReconstructionRequest& request, bool best_quality,
+                                const std::optional<py::function>& callback) {
+  const Progress progress = progress_from(callback);
+  const py::gil_scoped_release release;
+  return reconstruct(take, sensors, request, best_quality ? Quality::best : Quality::live,
+                     progress);
 }
 
 }  // namespace
 
 void bind_reconstruction(py::module_& m) {
-  bind_estimates(m);
-  bind_baselines(m);
-  m.def("method_names", [] { return as_strings(method_names()); });
-  m.def(
-      "preset_names", [](const std::string& method) { return as_strings(method_presets(method)); },
-      py::arg("method"));
-  py::class_<BoundReconstructor>(m, "Reconstructor")
-      .def(py::init<Database, const std::vector<std::string>&, const std::string&,
-                    const std::string&, const std::optional<std::vector<double>>&,
-                    const std::optional<std::vector<std::string>>&, const std::vector<int>&>(),
-           py::arg("database"), py::arg("sites"), py::kw_only(), py::arg("method") = "tautges2011",
-           py::arg("preset") = "default", py::arg("places") = py::none(),
-           py::arg("quantities") = py::none(), py::arg("excluded_clips") = std::vector<int>{})
-      .def_property_readonly("latency_frames", &BoundReconstructor::latency_frames)
-      .def("step", &BoundReconstructor::step, py::arg("specific_force"))
-      .def("flush", &BoundReconstructor::flush)
-      .def("reset", &BoundReconstructor::reset)
-      .def("solve", &BoundReconstructor::solve, py::arg("specific_force"), py::kw_only(),
-           py::arg("offline") = false, py::arg("progress") = py::none());
+  bind_methods(m);
+  bind_values(m);
+  bind_live(m);
+  m.def("reconstruct", &reconstruct_take, py::arg("take"), py::arg("sensors"), py::arg("request"),
+        py::kw_only(), py::arg("best_quality") = false, py::arg("progress") = py::none(),
+        "Returns the Reconstruction of a whole take: a SensorRecording and a SensorInput a sensor. "
+        "Raises ConfigError and Cancelled.");
 }
 
 }  // namespace sparse_mocap::python

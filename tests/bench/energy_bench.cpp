@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "sparse_mocap/tautges2011/minimizer.hpp"
+#include "sparse_mocap/retrieval/pose_minimizer.hpp"
 #include "support/synthetic.hpp"
 #include "tautges2011/ceres_minimizer.hpp"
 #include "tautges2011/neighbourhoods.hpp"
@@ -14,11 +14,12 @@
 namespace sparse_mocap {
 namespace {
 
+using retrieval::Neighbourhood;
+using retrieval::PoseSubspace;
+using tautges2011::Config;
 using tautges2011::Energy;
-using tautges2011::Neighbourhood;
-using tautges2011::PoseSubspace;
 
-// Energies as a reconstruction by the paper's preset meets them, with where each begins.
+// Energies as a reconstruction by the paper's method meets them, with where each begins.
 struct Problem {
   Energy energy;
   PoseSubspace subspace;
@@ -37,10 +38,10 @@ const std::vector<Problem>& problems() {
     std::vector<Problem> out;
     for (int i = 0; i < 32; ++i) {
       const Neighbourhood found = testing::retrieved_neighbourhood(*database, random, 256);
-      const PoseSubspace subspace = tautges2011::weighted_pca(found.angles, found.weights, 0.99);
+      const PoseSubspace subspace = retrieval::weighted_pca(found.angles, found.weights, 0.99);
       const Eigen::VectorXd start = 0.5 * (found.angles.col(0) + subspace.mean);
       out.push_back({Energy(database->skeleton(), found.weights,
-                            testing::all_terms(*database, found, tautges2011::preset("paper"))),
+                            testing::all_terms(*database, found, Config())),
                      subspace, start});
     }
     return out;
@@ -64,8 +65,8 @@ void minimize_by_majorising(benchmark::State& state) {
   for (auto _ : state) {
     const Problem& problem = problems()[i++ % problems().size()];
     const auto minimum =
-        tautges2011::minimize(problem.energy, problem.subspace, {problem.start}, 50);
-    energy += minimum.energy;
+        retrieval::minimize(problem.energy, problem.subspace, {problem.start}, 50);
+    energy += minimum.value;
     iterations += minimum.iterations;
   }
   state.counters["energy"] = benchmark::Counter(energy, benchmark::Counter::kAvgIterations);

@@ -30,8 +30,9 @@ std::vector<Reading> take() {
   return testing::readings_of(*other, 0, testing::paper_sensors());
 }
 
-void frame(benchmark::State& state, const std::string& preset) {
-  const auto method = make_method("tautges2011", preset, database(), testing::paper_sensors());
+void frame(benchmark::State& state, const std::string& name) {
+  const auto method = make_live_method(find_method(name), {},
+                                       {database(), nullptr, {}, testing::paper_sensors(), {}});
   const auto readings = take();
   std::size_t t = 0;
   for (auto _ : state) {
@@ -45,8 +46,8 @@ void frame(benchmark::State& state, const std::string& preset) {
   }
   state.counters["frames"] = benchmark::Counter(static_cast<double>(database()->num_frames()));
 }
-BENCHMARK_CAPTURE(frame, default, "default")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(frame, paper, "paper")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frame, path_regression, "path_regression")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frame, tautges2011, "tautges2011")->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace sparse_mocap

@@ -9,11 +9,14 @@
 #include <nanoflann.hpp>
 #include <vector>
 
-#include "sparse_mocap/database/index.hpp"
-#include "sparse_mocap/tautges2011/olng.hpp"
+#include "sparse_mocap/retrieval/knn_index.hpp"
+#include "sparse_mocap/retrieval/olng.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
+
+using namespace retrieval;
+
 namespace {
 
 constexpr int kDimensions = 12;
@@ -104,10 +107,10 @@ void olng_extend(benchmark::State& state) {
     index.search(query, static_cast<int>(kNeighbours), columns.emplace_back());
   std::vector<std::int32_t> clips;
   for (std::int64_t n = 0; n < count; ++n) clips.push_back(static_cast<std::int32_t>(n / 200));
-  tautges2011::OlngConfig config;
+  OlngConfig config;
   config.window = static_cast<int>(state.range(1));
   if (config.window > 0) config.forgetting = 1.0;
-  tautges2011::OnlineLazyNeighbourhoodGraph graph(clips, config);
+  OnlineLazyNeighbourhoodGraph graph(clips, config);
   std::size_t i = 0;
   for (auto _ : state) {
     graph.extend(columns[i++ % columns.size()]);

@@ -31,6 +31,10 @@ class Channels {
     a.bits_ |= b.bits_;
     return a;
   }
+  friend constexpr Channels operator&(Channels a, Channels b) {
+    a.bits_ &= b.bits_;
+    return a;
+  }
   friend constexpr bool operator==(Channels a, Channels b) = default;
 
  private:

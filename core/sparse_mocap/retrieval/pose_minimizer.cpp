@@ -40,7 +40,7 @@ Eigen::VectorXd model_step(const PoseObjective::Model& model) {
 
 Minimum minimize(const PoseObjective& objective, const PoseSubspace& subspace,
                  const std::vector<Eigen::VectorXd>& starts, int max_iterations) {
-  Eigen::VectorXd y = best_start(energy, subspace, starts);
+  Eigen::VectorXd y = best_start(objective, subspace, starts);
   Minimum minimum;
   PoseObjective::Model model = objective.majorised(subspace.pose(y), subspace.basis);
   while (minimum.iterations < max_iterations && !minimum.is_converged) {

@@ -27,12 +27,15 @@ class Baselines : public ::testing::Test {
 
   static std::vector<Reading> take(const std::vector<double>& values) {
     std::vector<Reading> readings;
-    for (const double value : values) readings.push_back(Reading::Constant(3, 2, value));
+    for (const double value : values) {
+      readings.emplace_back(2);
+      readings.back().specific_force.setConstant(value);
+    }
     return readings;
   }
 
   static constexpr float kValue[] = {0, 1, 2, 3, 2, 1, 0, 5, 1, 1, 3, 3};
-  const std::vector<WornSensor> sensors_{{0, 1.0}, {3, 1.0}};
+  const std::vector<Sensor> sensors_{{0, 1.0}, {3, 1.0}};
   std::shared_ptr<const MotionDatabase> database_;
 };
 

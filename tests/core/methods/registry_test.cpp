@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <set>
 #include <string>
 
 #include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/database/model.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
@@ -21,45 +23,118 @@ std::string complaint(const std::function<void()>& call) {
   return "";
 }
 
-std::shared_ptr<const MotionDatabase> small_database() {
-  return testing::database_of({testing::swaying_motion(testing::template_skeleton(), 1, 60, 25.0)});
+MethodContext small_context() {
+  MethodContext context;
+  context.database =
+      testing::database_of({testing::swaying_motion(testing::template_skeleton(), 1, 60, 25.0)});
+  context.sensors = testing::paper_sensors();
+  return context;
 }
 
-TEST(Registry, MakesEveryMethodInEveryPreset) {
-  const auto database = small_database();
-  EXPECT_FALSE(method_names().empty());
-  for (const auto name : method_names()) {
-    EXPECT_FALSE(method_presets(name).empty());
-    for (const auto preset : method_presets(name)) {
-      const auto method = make_method(name, preset, database, testing::paper_sensors());
-      const auto take = testing::readings_of(*database, 0, testing::paper_sensors());
-      EXPECT_EQ(method->solve(take, Progress()).size(), take.size()) << name << " " << preset;
+void make(const MethodEntry& method, const MethodSettings& settings, const MethodContext& context) {
+  if (method.make_live != nullptr) make_live_method(method, settings, context);
+  if (method.make_whole_take != nullptr) make_whole_take_method(method, settings, context);
+}
+
+// What is wrong with the settings, and with what the method has to work with.
+std::string refusal(const MethodEntry& method, const MethodSettings& settings,
+                    const MethodContext& context) {
+  return complaint([&] { make(method, settings, context); });
+}
+
+TEST(Registry, DescribesEveryMethod) {
+  ASSERT_FALSE(methods().empty());
+  EXPECT_EQ(methods().front().info.name, "path_regression");
+  std::set<std::string> names;
+  for (const auto& [info, make_live, make_whole_take, train] : methods()) {
+    EXPECT_TRUE(names.insert(info.name).second) << info.name;
+    EXPECT_FALSE(info.title.empty());
+    EXPECT_FALSE(info.summary.empty());
+    EXPECT_FALSE(info.presets.empty());
+    EXPECT_FALSE(info.required_channels.is_empty());
+    EXPECT_LE(info.fewest_sensors, info.most_sensors);
+    EXPECT_TRUE(make_live != nullptr || make_whole_take != nullptr);
+    EXPECT_EQ(info.needs_model, train != nullptr);
+    std::set<std::string> options;
+    for (const auto& option : info.options) {
+      EXPECT_TRUE(options.insert(option.name).second) << option.name;
+      EXPECT_FALSE(option.help.empty()) << option.name;
+      EXPECT_NO_THROW(parsed_option(option, option.default_value)) << option.name;
+    }
+  }
+}
+
+TEST(Registry, MakesEveryMethodInEveryPresetWithEveryOption) {
+  for (const auto& method : methods()) {
+    if (method.info.needs_model || method.info.needs_body) continue;
+    MethodSettings settings;
+    for (const auto& option : method.info.options)
+      settings.options[option.name] = option.default_value;
+    for (const auto& preset : method.info.presets) {
+      settings.preset = preset.name;
+      EXPECT_EQ(refusal(method, settings, small_context()), "") << method.info.name;
+    }
+  }
+}
+
+TEST(Registry, MakesTheVariantsOfEveryExperiment) {
+  for (const auto& method : methods()) {
+    for (const auto& experiment : method.info.experiments) {
+      EXPECT_FALSE(experiment.help.empty());
+      EXPECT_GE(experiment.variants.size(), 2U);
+      if (method.info.needs_model || method.info.needs_body) continue;
+      for (const auto& variant : experiment.variants)
+        EXPECT_EQ(refusal(method, {"", variant.options}, small_context()), "") << variant.label;
     }
   }
 }
 
 TEST(Registry, ListsWhatItKnowsWhenAskedForSomethingElse) {
-  const auto database = small_database();
-  const auto sensors = testing::paper_sensors();
-  for (const auto& text : {complaint([] { method_presets("magic"); }), complaint([&] {
-                             make_method("magic", "default", database, sensors);
-                           })}) {
-    EXPECT_NE(text.find("'magic'"), std::string::npos) << text;
-    for (const auto name : method_names()) EXPECT_NE(text.find(name), std::string::npos);
-  }
-  for (const auto name : method_names()) {
-    const auto text = complaint([&] { make_method(name, "fancy", database, sensors); });
-    EXPECT_NE(text.find("'fancy'"), std::string::npos) << text;
-    for (const auto preset : method_presets(name)) EXPECT_NE(text.find(preset), std::string::npos);
+  EXPECT_EQ(complaint([] { find_method("magic"); }),
+            "unknown method 'magic'; known are path_regression, tautges2011");
+  for (const auto& method : methods()) {
+    const auto preset = refusal(method, {"fancy", {}}, small_context());
+    EXPECT_NE(preset.find("'fancy'"), std::string::npos) << preset;
+    for (const auto& known : method.info.presets)
+      EXPECT_NE(preset.find(known.name), std::string::npos) << preset;
+    const auto option = refusal(method, {"", {{"num_neighbors", "3"}}}, small_context());
+    EXPECT_NE(option.find("did you mean 'num_neighbours'"), std::string::npos) << option;
   }
 }
 
-TEST(Registry, HandsExclusionsOn) {
-  const auto database = small_database();
-  EXPECT_NE(complaint([&] {
-              make_method("tautges2011", "default", database, testing::paper_sensors(), {0});
-            }),
-            "");
+TEST(Registry, SaysWhatAMethodLacks) {
+  const MethodEntry& method = methods().front();
+  const auto refused = [&](const std::function<void(MethodContext&)>& change) {
+    MethodContext context = small_context();
+    change(context);
+    return refusal(method, {}, context);
+  };
+  EXPECT_EQ(refused([](auto& c) { c.database = nullptr; }),
+            "method path_regression needs a motion database (--database)");
+  EXPECT_EQ(refused([](auto& c) { c.sensors.clear(); }),
+            "method path_regression needs 1 to 11 sensors, got 0");
+  EXPECT_EQ(refused([](auto& c) { c.sensors[1].channels = Channel::orientation; }),
+            "method path_regression needs specific_force of every sensor, and right_wrist does not "
+            "give it");
+  EXPECT_EQ(refused([](auto& c) { c.excluded_clips = {0}; }),
+            "every clip of the database is excluded");
+}
+
+TEST(Registry, SaysWhichWayAMethodDoesNotWork) {
+  const MethodEntry& method = find_method("tautges2011");
+  EXPECT_EQ(complaint([&] { make_whole_take_method(method, {}, small_context()); }),
+            "method tautges2011 has no best quality: it works live only, frame by frame");
+  MethodEntry whole_takes_only = methods().front();
+  whole_takes_only.make_live = nullptr;
+  EXPECT_NE(complaint([&] { make_live_method(whole_takes_only, {}, small_context()); })
+                .find("does not work live"),
+            std::string::npos);
+}
+
+TEST(TrainModel, RefusesMethodsThatLearnNothing) {
+  EXPECT_EQ(complaint([] { train_model(methods().front(), {}, {{}}, Progress()); }),
+            "method path_regression needs no trained model: it works on a motion database as it "
+            "is");
 }
 
 }  // namespace

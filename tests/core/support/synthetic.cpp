@@ -73,24 +73,34 @@ std::shared_ptr<const MotionDatabase> database_of(const std::vector<Motion>& mot
   return database_of(content_of(motions, rate_hz));
 }
 
-std::vector<WornSensor> paper_sensors() {
-  std::vector<WornSensor> sensors;
+std::vector<Sensor> paper_sensors() {
+  std::vector<Sensor> sensors;
   for (const int site : paper_sites()) sensors.push_back({site, 1.0});
   return sensors;
 }
 
 std::vector<Reading> readings_of(const MotionDatabase& database, int clip,
-                                 const std::vector<WornSensor>& sensors) {
+                                 const std::vector<Sensor>& sensors) {
   const Clip& wanted = database.clips()[static_cast<std::size_t>(clip)];
   std::vector<Reading> readings;
   for (int frame = wanted.begin; frame < wanted.end; ++frame) {
-    Reading reading(3, static_cast<Eigen::Index>(sensors.size()));
+    Reading reading(static_cast<Eigen::Index>(sensors.size()));
+    reading.time_s = (frame - wanted.begin) * database.frame_time_s();
     for (std::size_t s = 0; s < sensors.size(); ++s) {
+      const auto at = static_cast<Eigen::Index>(s);
       const Eigen::Index column = 3 * sensors[s].site;
-      const Vec3 pivot =
-          database.specific_force_pivot().row(frame).segment<3>(column).cast<double>();
-      const Vec3 end = database.specific_force_end().row(frame).segment<3>(column).cast<double>();
-      reading.col(static_cast<Eigen::Index>(s)) = pivot + sensors[s].place * (end - pivot);
+      const auto row = [&](const FloatRows& rows) -> Vec3 {
+        return rows.row(frame).segment<3>(column).transpose().cast<double>();
+      };
+      const Vec3 pivot = row(database.specific_force_pivot());
+      const Vec3 end = row(database.specific_force_end());
+      const Channels channels = sensors[s].channels;
+      if (channels.has(Channel::specific_force))
+        reading.specific_force.col(at) = pivot + sensors[s].position_along_bone * (end - pivot);
+      if (channels.has(Channel::angular_velocity))
+        reading.angular_velocity.col(at) = row(database.angular_velocity());
+      if (channels.has(Channel::gravity_direction))
+        reading.gravity_direction.col(at) = row(database.up());
     }
     readings.push_back(reading);
   }

@@ -12,7 +12,7 @@
 #include "sparse_mocap/database/database_content.hpp"
 #include "sparse_mocap/motion/motion.hpp"
 #include "sparse_mocap/motion/standard_skeleton.hpp"
-#include "sparse_mocap/reconstruction/method.hpp"
+#include "sparse_mocap/readings/reading.hpp"
 
 namespace sparse_mocap::testing {
 
@@ -57,10 +57,11 @@ std::shared_ptr<const MotionDatabase> database_of(const std::vector<Motion>& mot
                                                   double rate_hz = 25.0);
 
 // left_wrist, right_wrist, left_ankle, right_ankle at the ends of their bones.
-std::vector<WornSensor> paper_sensors();
+std::vector<Sensor> paper_sensors();
 
-// What the database's own virtual sensors read in one of its clips.
+// What the database's own virtual sensors read in one of its clips: the sensors' channels, of which
+// specific force, angular velocity and gravity direction are known.
 std::vector<Reading> readings_of(const MotionDatabase& database, int clip,
-                                 const std::vector<WornSensor>& sensors);
+                                 const std::vector<Sensor>& sensors);
 
 }  // namespace sparse_mocap::testing

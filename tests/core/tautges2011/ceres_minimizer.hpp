@@ -12,7 +12,7 @@ namespace sparse_mocap::testing {
 
 class EnergyInSubspace : public ceres::FirstOrderFunction {
  public:
-  EnergyInSubspace(const tautges2011::Energy& energy, const tautges2011::PoseSubspace& subspace)
+  EnergyInSubspace(const tautges2011::Energy& energy, const retrieval::PoseSubspace& subspace)
       : energy_(energy), subspace_(subspace) {}
 
   bool Evaluate(const double* parameters, double* cost, double* gradient) const override {
@@ -31,12 +31,12 @@ class EnergyInSubspace : public ceres::FirstOrderFunction {
 
  private:
   const tautges2011::Energy& energy_;
-  const tautges2011::PoseSubspace& subspace_;
+  const retrieval::PoseSubspace& subspace_;
 };
 
 // The least energy that L-BFGS reaches from the start.
 inline double ceres_minimum(const tautges2011::Energy& energy,
-                            const tautges2011::PoseSubspace& subspace,
+                            const retrieval::PoseSubspace& subspace,
                             const Eigen::VectorXd& start) {
   const ceres::GradientProblem problem(new EnergyInSubspace(energy, subspace));
   ceres::GradientProblemSolver::Options options;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/tautges2011/minimizer.hpp"
+#include "sparse_mocap/retrieval/pose_minimizer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,9 @@
 #include "tautges2011/neighbourhoods.hpp"
 
 namespace sparse_mocap::tautges2011 {
+
+using namespace retrieval;
+
 namespace {
 
 using testing::all_terms;
@@ -42,11 +45,11 @@ void expect_as_low_as_ceres(const MotionDatabase& database, const Config& config
     const Minimum ours = minimize(energy, subspace, {start}, 200);
     const double theirs = ceres_minimum(energy, subspace, start);
     EXPECT_TRUE(ours.is_converged);
-    const double gap = (ours.energy - theirs) / theirs;
+    const double gap = (ours.value - theirs) / theirs;
     worst = std::max(worst, gap);
     // Where the other found a deeper valley, ours is at the bottom of one as well.
     if (gap > 1e-4) {
-      EXPECT_GE(ceres_minimum(energy, subspace, ours.angles), ours.energy * (1.0 - 1e-4));
+      EXPECT_GE(ceres_minimum(energy, subspace, ours.angles), ours.value * (1.0 - 1e-4));
     }
     mean += gap / count;
     iterations += static_cast<double>(ours.iterations) / count;
@@ -63,22 +66,22 @@ TEST(Minimize, NeedsAStart) {
   const auto database = swaying_database();
   Random random(2);
   const Neighbourhood found = retrieved_neighbourhood(*database, random, 16);
-  const Energy energy(database->skeleton(), found.weights, all_terms(*database, found, {}));
+  const Energy energy(database->skeleton(), found.weights, all_terms(*database, found, Config()));
   const PoseSubspace subspace = weighted_pca(found.angles, found.weights, 0.99);
   EXPECT_THROW(minimize(energy, subspace, {}, 10), std::invalid_argument);
 }
 
 TEST(Minimize, EndsAsLowAsCeresOnSyntheticNeighbourhoods) {
-  expect_as_low_as_ceres(*swaying_database(), preset("paper"), 60, "synthetic, square roots");
-  Config squares = preset("paper");
-  squares.kernel_power = 2.0;
-  expect_as_low_as_ceres(*swaying_database(), squares, 20, "synthetic, squares");
+  expect_as_low_as_ceres(*swaying_database(), {}, 60, "synthetic, kernels");
+  Config normal;
+  normal.prior = PriorModel::mahalanobis;
+  expect_as_low_as_ceres(*swaying_database(), normal, 20, "synthetic, Mahalanobis distances");
 }
 
 TEST(Minimize, EndsAsLowAsCeresOnHdm05) {
   SKIP_WITHOUT_REAL_DATA("hdm05/HDM_bd.asf");
   const auto database = testing::hdm05_database(6);
-  expect_as_low_as_ceres(*database, preset("paper"), 100, "HDM05, square roots");
+  expect_as_low_as_ceres(*database, {}, 100, "HDM05, kernels");
 }
 
 TEST(Minimize, NeverLetsTheEnergyRise) {
@@ -86,18 +89,18 @@ TEST(Minimize, NeverLetsTheEnergyRise) {
   Random random(3);
   for (int trial = 0; trial < 20; ++trial) {
     const Neighbourhood found = retrieved_neighbourhood(*database, random, 32);
-    const Energy energy(database->skeleton(), found.weights, all_terms(*database, found, {}));
+    const Energy energy(database->skeleton(), found.weights, all_terms(*database, found, Config()));
     const PoseSubspace subspace = weighted_pca(found.angles, found.weights, 0.99);
     const Eigen::VectorXd start = subspace.mean + random.column(43, 0.5);
     double last = energy.value(subspace.pose(subspace.coordinates(start)));
     for (int iterations = 1; iterations < 15; ++iterations) {
       const Minimum minimum = minimize(energy, subspace, {start}, iterations);
-      EXPECT_LE(minimum.energy, last + 1e-12);
+      EXPECT_LE(minimum.value, last + 1e-12);
       EXPECT_LE(minimum.iterations, iterations);
-      EXPECT_NEAR(minimum.energy, energy.value(minimum.angles), 1e-9);
+      EXPECT_NEAR(minimum.value, energy.value(minimum.angles), 1e-9);
       EXPECT_LT((minimum.angles - subspace.pose(subspace.coordinates(minimum.angles))).norm(),
                 1e-9);
-      last = minimum.energy;
+      last = minimum.value;
     }
   }
 }
@@ -111,10 +114,9 @@ TEST(Minimize, ShortensStepsThatOvershoot) {
     const Eigen::VectorXd wanted = random.column(43, 1.0);
     JointTransforms pose;
     forward_kinematics(skeleton, Vec3::Zero(), wanted, pose);
-    Eigen::MatrixXd target(63, 1);
-    for (Eigen::Index j = 0; j < kNumStandardJoints; ++j)
-      target.col(0).segment<3>(3 * j) = pose.end[static_cast<std::size_t>(j)];
-    const Energy energy(skeleton, Eigen::VectorXd::Ones(1), {{{}, 1.0, 2.0, target}});
+    const Eigen::VectorXd target = stacked_ends(pose);
+    const Energy energy(skeleton, Eigen::VectorXd::Ones(1),
+                        {{}, {{{}, 1.0, target, Eigen::MatrixXd::Identity(63, 63)}}});
     const PoseSubspace everything{Eigen::VectorXd::Zero(43), Eigen::MatrixXd::Identity(43, 43)};
     const Eigen::VectorXd start = wanted + random.column(43, 1.5);
     const Minimum minimum = minimize(energy, everything, {start}, 500);
@@ -133,22 +135,23 @@ TEST(Minimize, DescendsFromTheBestStart) {
   const auto database = swaying_database();
   Random random(4);
   const Neighbourhood found = retrieved_neighbourhood(*database, random, 32);
-  const Energy energy(database->skeleton(), found.weights, all_terms(*database, found, {}));
+  const Energy energy(database->skeleton(), found.weights, all_terms(*database, found, Config()));
   const PoseSubspace subspace = weighted_pca(found.angles, found.weights, 0.99);
   const Eigen::VectorXd far = subspace.mean + random.column(43, 3.0);
   const Eigen::VectorXd near = found.angles.col(0);
-  EXPECT_LE(minimize(energy, subspace, {far, near}, 1).energy,
+  EXPECT_LE(minimize(energy, subspace, {far, near}, 1).value,
             energy.value(subspace.pose(subspace.coordinates(near))));
-  EXPECT_EQ(minimize(energy, subspace, {near, far}, 5).energy,
-            minimize(energy, subspace, {far, near}, 5).energy);
+  EXPECT_EQ(minimize(energy, subspace, {near, far}, 5).value,
+            minimize(energy, subspace, {far, near}, 5).value);
 }
 
-TEST(Minimize, FindsTheWeightedMeanOfSquares) {
+TEST(Minimize, FindsTheMeanOfANormalDistribution) {
   Random random(5);
   const Eigen::MatrixXd targets = random.matrix(43, 20, 1.0);
   const Eigen::VectorXd weights = Eigen::VectorXd::Constant(20, 0.05);
   const Skeleton skeleton = template_skeleton();
-  const Energy energy(skeleton, weights, {{{Compared::angles, {}}, 1.0, 2.0, targets}});
+  const KernelTerm kernel{{TermSpace::Compared::angles, {}}, 1.0, targets};
+  const Energy energy(skeleton, weights, {{}, {normal_term(kernel, weights)}});
   const PoseSubspace subspace = weighted_pca(targets, weights, 0.9);
   const Minimum minimum = minimize(energy, subspace, {targets.col(3)}, 20);
   EXPECT_LT((minimum.angles - targets.rowwise().mean()).norm(), 1e-6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/database/index.hpp"
+#include "sparse_mocap/retrieval/knn_index.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "support/synthetic.hpp"
 
-namespace sparse_mocap {
+namespace sparse_mocap::retrieval {
 namespace {
 
 using testing::Random;
@@ -178,4 +178,4 @@ TEST(KnnIndex, AnswersSeveralThreadsAtOnce) {
 }
 
 }  // namespace
-}  // namespace sparse_mocap
+}  // namespace sparse_mocap::retrieval

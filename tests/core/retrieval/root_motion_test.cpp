@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/tautges2011/root_motion.hpp"
+#include "sparse_mocap/retrieval/root_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "sparse_mocap/motion/heading.hpp"
 #include "support/synthetic.hpp"
 
-namespace sparse_mocap::tautges2011 {
+namespace sparse_mocap::retrieval {
 namespace {
 
 using namespace standard_joint;
@@ -126,4 +126,4 @@ TEST(RootRatesOf, NeighboursAreTheirWeightedMeans) {
 }
 
 }  // namespace
-}  // namespace sparse_mocap::tautges2011
+}  // namespace sparse_mocap::retrieval

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/tautges2011/olng.hpp"
+#include "sparse_mocap/retrieval/olng.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tautges2011/path_search.hpp"
+#include "retrieval/path_search.hpp"
 
-namespace sparse_mocap::tautges2011 {
+namespace sparse_mocap::retrieval {
 namespace {
 
 using testing::BestPath;
@@ -159,4 +159,4 @@ TEST(Olng, BeginsAnewAfterColumnsWithoutNeighbours) {
 }
 
 }  // namespace
-}  // namespace sparse_mocap::tautges2011
+}  // namespace sparse_mocap::retrieval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/tautges2011/subspace.hpp"
+#include "sparse_mocap/retrieval/subspace.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "support/synthetic.hpp"
 
-namespace sparse_mocap::tautges2011 {
+namespace sparse_mocap::retrieval {
 namespace {
 
 using testing::Random;
@@ -91,4 +91,4 @@ TEST(WeightedPca, IgnoresPosesWithoutWeight) {
 }
 
 }  // namespace
-}  // namespace sparse_mocap::tautges2011
+}  // namespace sparse_mocap::retrieval

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "sparse_mocap/tautges2011/olng.hpp"
+#include "sparse_mocap/retrieval/olng.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap::testing {
@@ -17,7 +17,7 @@ namespace sparse_mocap::testing {
 struct SearchProblem {
   std::vector<std::int32_t> clip_of_frame;
   std::vector<std::vector<Neighbour>> columns;
-  tautges2011::OlngConfig config;
+  retrieval::OlngConfig config;
 
   // What matching this node earns.
   double own(std::size_t column, std::size_t node) const {
@@ -113,7 +113,7 @@ inline std::vector<std::vector<BestPath>> windowed_search(const SearchProblem& p
 // Columns of k different frames with random distances, ascending; clips of the given lengths.
 inline SearchProblem random_problem(Random& random, int frames, int columns, int k,
                                     const std::vector<int>& clip_lengths,
-                                    const tautges2011::OlngConfig& config) {
+                                    const retrieval::OlngConfig& config) {
   SearchProblem problem;
   problem.config = config;
   for (std::size_t c = 0; c < clip_lengths.size(); ++c)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/tautges2011/regression.hpp"
+#include "sparse_mocap/path_regression/regression.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "tautges2011/neighbourhoods.hpp"
 
-namespace sparse_mocap::tautges2011 {
+namespace sparse_mocap::path_regression {
 namespace {
 
 using testing::Random;
@@ -120,4 +120,4 @@ TEST(ShiftToRegression, MovesTheMeanToThePredictionAndKeepsDifferences) {
 }
 
 }  // namespace
-}  // namespace sparse_mocap::tautges2011
+}  // namespace sparse_mocap::path_regression

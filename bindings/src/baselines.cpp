@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/methods/baselines.hpp"
+
+#include "common.hpp"
+#include "readings.hpp"
+#include "sparse_mocap/motion/standard_skeleton.hpp"
+
+namespace sparse_mocap::python {
+namespace {
+
+using Database = std::shared_ptr<MotionDatabase>;
+
+// Runs work, which must not touch Python, and gives its result to NumPy.
+template <typename Work>
+py::array_t<std::int64_t> without_gil(const Work& work) {
+  std::vector<int> values;
+  {
+    const py::gil_scoped_release release;
+    values = work();
+  }
+  py::array_t<std::int64_t> out(static_cast<py::ssize_t>(values.size()));
+  std::copy(values.begin(), values.end(), out.mutable_data());
+  return out;
+}
+
+}  // namespace
+
+void bind_baselines(py::module_& m) {
+  m.def(
+      "playback_best_path",
+      [](const Database& database, const Readings& take, const std::vector<int>& excluded_clips) {
+        return without_gil([&] {
+          return playback_best_path(*database, take.sensors, take.readings, excluded_clips);
+        });
+      },
+      py::arg("database"), py::arg("take"), py::arg("excluded_clips") = std::vector<int>{},
+      "Returns for each reading the database frame at the end of the best path, (T,).");
+  m.def(
+      "nearest_windows",
+      [](const Database& database, const Readings& take, int window,
+         const std::vector<int>& excluded_clips) {
+        return without_gil([&] {
+          return nearest_windows(*database, take.sensors, take.readings, window, excluded_clips);
+        });
+      },
+      py::arg("database"), py::arg("take"), py::arg("window") = 10,
+      py::arg("excluded_clips") = std::vector<int>{},
+      "Returns for each reading the database frame whose last `window` readings are nearest, (T,).");
+  m.def(
+      "nearest_poses",
+      [](const Database& database, const Doubles& positions,
+         const std::vector<int>& excluded_clips) {
+        require_shape(positions, {-1, kNumStandardJoints, 3}, "positions");
+        const Eigen::MatrixXd columns = Eigen::Map<const Eigen::MatrixXd>(
+            positions.data(), 3 * kNumStandardJoints, positions.shape(0));
+        return without_gil([&] { return nearest_poses(*database, columns, excluded_clips); });
+      },
+      py::arg("database"), py::arg("positions"), py::arg("excluded_clips") = std::vector<int>{},
+      "Returns for each pose (T, 21, 3; heading frame, m) the nearest database frame, (T,).");
+}
+
+}  // namespace sparse_mocap::python

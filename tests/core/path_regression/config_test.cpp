@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/path_regression/config.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sparse_mocap/base/errors.hpp"
+
+namespace sparse_mocap::path_regression {
+namespace {
+
+TEST(Config, OfLiveQualityLooksOneFrameAhead) {
+  const Config config = live_config();
+  EXPECT_NO_THROW(options().validate(config));
+  EXPECT_EQ(retrieval::FeatureLayout(config.features, 25.0).look_ahead(), 1);
+  EXPECT_EQ(retrieval::FeatureLayout(config.features, 50.0).look_ahead(), 2);
+  EXPECT_EQ(retrieval::FeatureLayout(config.regression_features, 25.0).look_ahead(), 1);
+  EXPECT_EQ(config.smoothing_s, 0.0);
+}
+
+TEST(Config, OfWholeTakesLooksAsFarAheadAsBack) {
+  const Config config = whole_take_config();
+  EXPECT_NO_THROW(options().validate(config));
+  for (const auto& parts : {config.features, config.regression_features}) {
+    const retrieval::FeatureLayout layout(parts, 25.0);
+    EXPECT_EQ(layout.look_ahead(), layout.reach_back());
+  }
+}
+
+TEST(Config, TakesSettingsOnTopOfEither) {
+  const MethodSettings settings{"default", {{"sharpness", "2.5"}, {"use_tempo_copies", "false"}}};
+  for (const auto& base : {live_config(), whole_take_config()}) {
+    const Config config = with_settings(base, settings);
+    EXPECT_EQ(config.sharpness, 2.5);
+    EXPECT_FALSE(config.use_tempo_copies);
+    EXPECT_EQ(config.forgetting, base.forgetting);
+  }
+  EXPECT_THROW(with_settings(live_config(), {"paper", {}}), ConfigError);
+}
+
+}  // namespace
+}  // namespace sparse_mocap::path_regression

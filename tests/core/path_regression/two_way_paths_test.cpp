@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/path_regression/two_way_paths.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/synthetic.hpp"
+#include "retrieval/path_search.hpp"
+
+namespace sparse_mocap::path_regression {
+namespace {
+
+using retrieval::OlngConfig;
+using retrieval::Path;
+using testing::exhaustive_search;
+using testing::Random;
+using testing::random_problem;
+using testing::SearchProblem;
+
+TEST(TwoWayPaths, FindsTheBestPathThroughEveryNode) {
+  Random random(1);
+  for (const double penalty : {0.7, 1.05}) {
+    for (int trial = 0; trial < 10; ++trial) {
+      OlngConfig config;
+      config.penalty = penalty;
+      config.forgetting = trial % 2 == 0 ? 0.9 : 1.0;
+      const SearchProblem problem = random_problem(random, 14, 7, 6, {5, 6, 3}, config);
+      TwoWayPaths retrieval(problem.clip_of_frame, config);
+      retrieval.run(problem.columns);
+      for (std::size_t t = 0; t < problem.columns.size(); ++t) {
+        for (std::size_t i = 0; i < problem.columns[t].size(); ++i) {
+          const auto before = exhaustive_search(problem, t, i);
+          const auto after = exhaustive_search(problem, t, i, -1);
+          const Path& path = retrieval.paths(t)[i];
+          EXPECT_EQ(path.frame, problem.columns[t][i].row);
+          EXPECT_NEAR(path.reward, before.reward + after.reward - problem.own(t, i), 1e-4);
+          EXPECT_EQ(path.length, before.length + after.length - 1);
+          EXPECT_EQ(path.previous_frame, before.previous_frame);
+        }
+      }
+    }
+  }
+}
+
+TEST(TwoWayPaths, MayRunAgainAndWithEmptyColumns) {
+  Random random(2);
+  SearchProblem problem = random_problem(random, 14, 5, 6, {14}, {});
+  TwoWayPaths retrieval(problem.clip_of_frame, {});
+  retrieval.run(problem.columns);
+  const double first = retrieval.paths(2)[0].reward;
+  retrieval.run(problem.columns);
+  EXPECT_EQ(retrieval.paths(2)[0].reward, first);
+  problem.columns[2].clear();
+  retrieval.run(problem.columns);
+  EXPECT_TRUE(retrieval.paths(2).empty());
+}
+
+}  // namespace
+}  // namespace sparse_mocap::path_regression
