@@ -6,37 +6,12 @@
 #include "sparse_mocap/sensors/sites.hpp"
 
 namespace sparse_mocap::python {
-namespace {
-
-std::string shape_text(const std::vector<py::ssize_t>& shape) {
-  std::string text = "(";
-  for (std::size_t i = 0; i < shape.size(); ++i)
-    text += (i == 0 ? "" : ", ") + (shape[i] < 0 ? std::string("any") : std::to_string(shape[i]));
-  return text + ")";
-}
-
-}  // namespace
-
-void require_shape(const Doubles& array, const std::vector<py::ssize_t>& expected,
-                   const char* name) {
-  const std::vector<py::ssize_t> shape(array.shape(), array.shape() + array.ndim());
-  bool is_right = shape.size() == expected.size();
-  for (std::size_t i = 0; is_right && i < shape.size(); ++i)
-    is_right = expected[i] < 0 || shape[i] == expected[i];
-  if (!is_right)
-    throw py::value_error(std::string(name) + " must have shape " + shape_text(expected) +
-                          ", got " + shape_text(shape));
-}
 
 py::str text_of(const std::string& text) {
   PyObject* decoded =
       PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace");
   if (decoded == nullptr) throw py::error_already_set();
   return py::reinterpret_steal<py::str>(decoded);
-}
-
-py::array_t<double> new_array(const std::vector<py::ssize_t>& shape) {
-  return py::array_t<double>(shape);
 }
 
 Progress progress_from(const std::optional<py::function>& callback,
