@@ -8,6 +8,7 @@ the call by returning False (the call then raises Cancelled and leaves nothing b
 from ._core_calibration import *
 from ._core_database import *
 from ._core_motion import *
+from ._core_readings import *
 from ._core_reconstruction import *
 from ._core_sensors import *
 from ._core_streams import *

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The compiled core: clocks, time lags, live resampling, calibration."""
+"""The compiled core: clocks, time lags, calibration."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -27,20 +27,6 @@ class ClockModel:
     def num_segments(self) -> int:
         """1 + how often the device's clock was set anew."""
 
-class Resampler:
-    """Live sensors on a database's time line, through the database's low-pass."""
-
-    def __init__(self, num_sensors: int, rate_hz: float) -> None: ...
-    def push(self, sensor: int, time_s: float, specific_force: ArrayLike) -> bool:
-        """Takes a sample; False when it is dropped, being no later than the sensor's last."""
-    def frames_until(self, now_s: float) -> list[tuple[float, Floats]]:
-        """The frames that are ready: time and readings (S, 3), NaN where a sensor is silent."""
-    def flush(self) -> list[tuple[float, Floats]]:
-        """The frames still owed when the performance has ended."""
-    @property
-    def delay_s(self) -> float:
-        """How long after its time a frame is ready."""
-
 def align_in_time(
     first_times_s: ArrayLike,
     first: ArrayLike,
@@ -52,27 +38,6 @@ def align_in_time(
 ) -> dict[str, Any]:
     """The lag of the second signal: lag_s, correlation, runner_up, event_s, is_found."""
 
-class InclinationFilter:
-    """The direction against gravity in a sensor's axes, as its samples come."""
-
-    def __init__(self) -> None: ...
-    def update(
-        self, time_s: float, specific_force: ArrayLike, angular_velocity: ArrayLike
-    ) -> Floats:
-        """Takes the next sample (s, m/s^2, rad/s) and returns a unit vector (3,).
-
-        NaN in the first half second, and until the gyroscope has turned.
-        """
-
-def inclinations(
-    times_s: ArrayLike,
-    specific_force: ArrayLike,
-    angular_velocity: ArrayLike,
-    *,
-    offline: bool = False,
-) -> Floats:
-    """The same for a whole recording, (T, 3); offline averages both ways and is never unsure."""
-
 def standing_pose_names() -> list[str]: ...
 def guided_movements() -> dict[str, tuple[str, list[str]]]:
     """Each movement's instruction and the sites that it calibrates."""
@@ -83,7 +48,7 @@ def calibrate_sensor(
     standing: tuple[Floats, Floats, Floats | None],
     movements: Sequence[tuple[str, tuple[Floats, Floats, Floats | None]]],
     height_m: float,
-    default_place: float | None,
+    default_position_along_bone: float | None,
     body: Skeleton | None = None,
 ) -> dict[str, Any]:
     """One sensor's calibration; recordings are times_s, specific_force, angular_velocity."""

@@ -13,12 +13,13 @@ def simulate(
     motion: Motion,
     sites: Sequence[str],
     rate_hz: float,
-    places: Sequence[float] | None = None,
+    positions_along_bone: Sequence[float] | None = None,
 ) -> dict[str, Floats]:
     """What ideal sensors on a standard-skeleton motion read.
 
-    ``time_s`` (T,), ``specific_force`` and ``angular_velocity`` (S, T, 3), ``orientation``
-    (S, T, 4, R_world_sensor). places: along the carrying bone, 1 (default) at its distal end.
+    ``time_s`` (T,), ``specific_force``, ``angular_velocity`` and ``position`` (S, T, 3; m, world),
+    ``orientation`` (S, T, 4, R_world_sensor). positions_along_bone: 1, the default, at the distal
+    end of the carrying bone.
     """
 
 def filtered_at(times_s: ArrayLike, values: ArrayLike, wanted_s: ArrayLike) -> Floats:

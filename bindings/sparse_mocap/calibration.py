@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Calibration: how each sensor is scaled, turned on its limb, and placed along its bone.
+"""Calibration: how each sensor is scaled, turned on its limb, and where it sits along its bone.
 
 The wearer stands still, then makes guided movements (guided_movements() names them); the spans of
 a take in which they do so are the steps. The result is kept in a file and holds until the sensors
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ._core import (
     ConfigError,
+    SensorInput,
     Skeleton,
     calibrate_sensor,
     guided_movements,
@@ -39,7 +40,8 @@ __all__ = [
     "assign_by_shaking",
     "calibrate",
     "guided_movements",
-    "places_of",
+    "positions_along_bone",
+    "sensor_inputs",
     "standing_pose_names",
     "worn_as",
 ]
@@ -61,22 +63,22 @@ class SensorCalibration:
     """Readings times this are m/s^2."""
     R_site_sensor: Floats
     """(3, 3), applied after the scale."""
-    place: float
-    """Along the site's bone, 0 at its pivot (elbow, knee), 1 at its end (wrist, ankle)."""
+    position_along_bone: float
+    """0 at the pivot of the site's bone (elbow, knee), 1 at its end (wrist, ankle)."""
     gyroscope_bias: Floats
     """(3,) rad/s, in the sensor's own axes."""
     quality: float
     """0, nothing is sure, to 1."""
     is_mounting_determined: bool
-    is_place_determined: bool
+    is_position_determined: bool
     gravity: float
     """What it read at rest, in its own unit."""
     unrest_mps2: float
     """How far its readings strayed while the wearer stood."""
     axis_ratio: float
     """How clearly the movements show one axis; 1 is not at all."""
-    place_deviation: float
-    """Standard deviation of the place."""
+    position_deviation: float
+    """Standard deviation of position_along_bone."""
     notes: tuple[str, ...] = ()
     """What could not be determined, why, and what was taken instead."""
 
@@ -141,13 +143,13 @@ def calibrate(
     sites: Mapping[str, str] | None = None,
     height_m: float = 1.75,
     body: Skeleton | None = None,
-    places: Mapping[str, float] | None = None,
+    positions: Mapping[str, float] | None = None,
 ) -> Calibration:
     """Returns the calibration of every sensor in the take.
 
     ``sites`` says where sensors are worn that the take names otherwise; ``height_m`` is the
-    wearer's, and scales the bones that places refer to, unless ``body`` is a standard skeleton
-    that has them; ``places`` are by site and measured, so
+    wearer's, and scales the bones that positions refer to, unless ``body`` is a standard skeleton
+    that has them; ``positions`` along the bone are by site and measured, so
     they win over what the movements show. Raises CalibrationError naming the sensor, what it
     read and what to do; ConfigError for names that are not known.
     """
@@ -156,37 +158,51 @@ def calibrate(
     for name, record in take.sensors.items():
         stand = _cut(name, record, steps.stand, "the standing pose")
         moves = [(move, _cut(name, record, span, move)) for move, span in steps.movements]
-        place = (places or {}).get(worn[name])
+        position = (positions or {}).get(worn[name])
         try:
-            told = calibrate_sensor(worn[name], steps.pose, stand, moves, height_m, place, body)
+            told = calibrate_sensor(worn[name], steps.pose, stand, moves, height_m, position, body)
         except ConfigError as error:
             raise CalibrationError(f"{name}: {error}") from None
-        found[name] = _known_place(worn[name], told, place)
+        found[name] = _at_known_position(worn[name], told, position)
     return Calibration(found)
 
 
 def apply(calibration: Calibration, take: Take) -> Take:
     """Returns what ideal sensors would have read: scaled, turned, named by their sites.
 
-    Their places are places_of(). Raises CalibrationError when a sensor has no calibration.
+    Where they sit is positions_along_bone(). Raises CalibrationError when a sensor has no
+    calibration.
     """
     sensors = {}
     for name, record in take.sensors.items():
         known = _of(calibration, name)
-        R = known.R_site_sensor
-        turn, orientation = record.angular_velocity, record.orientation
-        sensors[known.site] = SensorRecord(
-            record.times_s,
-            known.scale * record.specific_force @ R.T,
-            None if turn is None else (turn - known.gyroscope_bias) @ R.T,
-            None if orientation is None else _turned(orientation, R.T),
+        ideal = _sensor_input(known, ["specific_force"]).corrected(
+            record.specific_force, record.angular_velocity, record.orientation
         )
+        sensors[known.site] = SensorRecord(record.times_s, *ideal, record.position)
     return Take(sensors, take.comments)
 
 
-def places_of(calibration: Calibration, take: Take) -> list[float]:
-    """Returns the place of each of the take's sensors, in its order."""
-    return [_of(calibration, name).place for name in take.sensors]
+def positions_along_bone(calibration: Calibration, take: Take) -> list[float]:
+    """Returns where on its bone each of the take's sensors sits, in its order."""
+    return [_of(calibration, name).position_along_bone for name in take.sensors]
+
+
+places_of = positions_along_bone
+
+
+def sensor_inputs(
+    calibration: Calibration | None, names: Sequence[str], channels: Sequence[Sequence[str]]
+) -> list[SensorInput]:
+    """Returns sensors of these names as a ReadingStream takes them, with the channels wanted.
+
+    Without a calibration they are worn at the ends of their bones, as the sites they are named by
+    ask for. Raises CalibrationError when a sensor has no calibration.
+    """
+    pairs = zip(names, channels, strict=True)
+    if calibration is None:
+        return [SensorInput(name, list(wanted)) for name, wanted in pairs]
+    return [_sensor_input(_of(calibration, name), wanted) for name, wanted in pairs]
 
 
 def worn_as(calibration: Calibration | None, names: Sequence[str]) -> Worn:
@@ -201,7 +217,7 @@ def worn_as(calibration: Calibration | None, names: Sequence[str]) -> Worn:
     known = [_of(calibration, name) for name in names]
     return Worn(
         [sensor.site for sensor in known],
-        [sensor.place for sensor in known],
+        [sensor.position_along_bone for sensor in known],
         np.array([sensor.R_site_sensor for sensor in known]),
         np.array([sensor.scale for sensor in known]),
         np.array([sensor.gyroscope_bias for sensor in known]),
@@ -266,12 +282,30 @@ def _cut(
     )
 
 
-def _known_place(site: str, told: dict[str, Any], place: float | None) -> SensorCalibration:
+def _at_known_position(
+    site: str, told: dict[str, Any], position: float | None
+) -> SensorCalibration:
     found = SensorCalibration(site=site, **{**told, "notes": tuple(told["notes"])})
-    if place is None:
+    if position is None:
         return found
-    notes = tuple(note for note in found.notes if "place along" not in note)
-    return replace(found, place=place, is_place_determined=True, place_deviation=0.0, notes=notes)
+    return replace(
+        found,
+        position_along_bone=position,
+        is_position_determined=True,
+        position_deviation=0.0,
+        notes=tuple(note for note in found.notes if "position along" not in note),
+    )
+
+
+def _sensor_input(known: SensorCalibration, channels: Sequence[str]) -> SensorInput:
+    return SensorInput(
+        known.site,
+        list(channels),
+        position_along_bone=known.position_along_bone,
+        scale=known.scale,
+        R_site_sensor=known.R_site_sensor,
+        gyroscope_bias=known.gyroscope_bias,
+    )
 
 
 def _of(calibration: Calibration, name: str) -> SensorCalibration:
@@ -281,33 +315,3 @@ def _of(calibration: Calibration, name: str) -> SensorCalibration:
             f"the calibration has no sensor {name!r}; it has {', '.join(known)}: calibrate again"
         )
     return calibration.sensors[name]
-
-
-def _turned(quaternions: Floats, R: Floats) -> Floats:
-    """Returns q * R for unit quaternions (T, 4), w x y z."""
-    w, x, y, z = np.moveaxis(quaternions, 1, 0)
-    world = np.empty((len(quaternions), 3, 3))
-    world[:, 0] = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)], 1)
-    world[:, 1] = np.stack([2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)], 1)
-    world[:, 2] = np.stack([2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)], 1)
-    return _quaternions(world @ R)
-
-
-def _quaternions(rotations: Floats) -> Floats:
-    # 4 q q^T, row by row; the row with the largest diagonal is the best conditioned.
-    m = rotations
-    xx, yy, zz = m[:, 0, 0], m[:, 1, 1], m[:, 2, 2]
-    wx, wy, wz = m[:, 2, 1] - m[:, 1, 2], m[:, 0, 2] - m[:, 2, 0], m[:, 1, 0] - m[:, 0, 1]
-    xy, xz, yz = m[:, 0, 1] + m[:, 1, 0], m[:, 0, 2] + m[:, 2, 0], m[:, 1, 2] + m[:, 2, 1]
-    outer = np.stack(
-        [
-            np.stack([1 + xx + yy + zz, wx, wy, wz], 1),
-            np.stack([wx, 1 + xx - yy - zz, xy, xz], 1),
-            np.stack([wy, xy, 1 - xx + yy - zz, yz], 1),
-            np.stack([wz, xz, yz, 1 - xx - yy + zz], 1),
-        ],
-        1,
-    )
-    best = np.argmax(np.einsum("tii->ti", outer), axis=1)
-    rows = outer[np.arange(len(m)), best]
-    return rows / np.linalg.norm(rows, axis=1, keepdims=True)

@@ -20,20 +20,27 @@ from .table_errors import TableError, read_lines
 Path = str | os.PathLike[str]
 
 _FORMAT = "sparse_mocap_calibration"
+_VERSION = 2
+_OLD_NAMES = {
+    "place": "position_along_bone",
+    "is_place_determined": "is_position_determined",
+    "place_deviation": "position_deviation",
+}
+"""Of version 1, which stated none."""
 _SHAPES: dict[str, tuple[int, ...]] = {"R_site_sensor": (3, 3), "gyroscope_bias": (3,)}
-_NEEDED = ("site", "scale", "R_site_sensor", "place")
+_NEEDED = ("site", "scale", "R_site_sensor", "position_along_bone")
 _DEFAULTS: dict[str, Any] = {
     "gyroscope_bias": [0.0, 0.0, 0.0],
     "quality": 0.0,
     "is_mounting_determined": True,
-    "is_place_determined": True,
+    "is_position_determined": True,
     "gravity": 0.0,
     "unrest_mps2": 0.0,
     "axis_ratio": 1.0,
-    "place_deviation": 1.0,
+    "position_deviation": 1.0,
     "notes": [],
 }
-_LIMITS = {"scale": (0.01, 100.0), "place": (0.0, 1.0)}
+_LIMITS = {"scale": (0.01, 100.0), "position_along_bone": (0.0, 1.0)}
 
 
 class CalibrationFileError(TableError):
@@ -43,14 +50,15 @@ class CalibrationFileError(TableError):
 def write_calibration(path: Path, calibration: Calibration) -> None:
     """Writes a calibration file atomically."""
     sensors = {name: _plain(sensor) for name, sensor in calibration.sensors.items()}
-    text = json.dumps({"format": _FORMAT, "sensors": sensors}, indent=2, ensure_ascii=False)
-    write_text(path, text + "\n")
+    whole = {"format": _FORMAT, "format_version": _VERSION, "sensors": sensors}
+    write_text(path, json.dumps(whole, indent=2, ensure_ascii=False) + "\n")
 
 
 def read_calibration(path: Path) -> Calibration:
     """Returns the calibration in a file. Raises CalibrationFileError, naming the key, and OSError.
 
-    What a sensor needs is site, scale, R_site_sensor and place.
+    What a sensor needs is site, scale, R_site_sensor and position_along_bone, which files of format
+    version 1 call place.
     """
     try:
         whole = json.loads("\n".join(read_lines(path, CalibrationFileError)),
@@ -63,11 +71,18 @@ def read_calibration(path: Path) -> Calibration:
         raise CalibrationFileError(
             path, 0, f'is no calibration; it must be an object with "format": "{_FORMAT}"'
         )
-    _check_keys(path, "", whole, ("format", "sensors"), ("sensors",))
+    _check_keys(path, "", whole, ("format", "format_version", "sensors"), ("sensors",))
+    version = whole.get("format_version", 1)
+    if isinstance(version, bool) or version not in range(1, _VERSION + 1):
+        raise CalibrationFileError(
+            path, 0, f"format_version is {version!r}; this version of Sparse Mocap reads 1 to "
+            f"{_VERSION}: update it, or calibrate again"
+        )  # fmt: skip
     sensors = whole["sensors"]
     if not isinstance(sensors, dict) or not sensors:
         raise CalibrationFileError(path, 0, "'sensors' must be an object with a sensor or more")
-    return Calibration({name: _sensor(path, name, value) for name, value in sensors.items()})
+    names = _OLD_NAMES if version == 1 else {}
+    return Calibration({name: _sensor(path, name, value, names) for name, value in sensors.items()})
 
 
 def _plain(sensor: SensorCalibration) -> dict[str, Any]:
@@ -78,9 +93,10 @@ def _plain(sensor: SensorCalibration) -> dict[str, Any]:
     }
 
 
-def _sensor(path: Path, name: str, value: Any) -> SensorCalibration:
+def _sensor(path: Path, name: str, value: Any, new_names: dict[str, str]) -> SensorCalibration:
     if not isinstance(value, dict):
         raise CalibrationFileError(path, 0, f"sensors.{name} must be an object")
+    value = {new_names.get(key, key): entry for key, entry in value.items()}
     known = [field.name for field in fields(SensorCalibration)]
     _check_keys(path, f"sensors.{name}.", value, known, _NEEDED)
     checked = {

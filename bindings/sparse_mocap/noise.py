@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import GRAVITY_MPS2
+from .rotations import about_axis, product
 from .take import SensorRecord, Take
 
 Floats = NDArray[np.float64]
@@ -95,24 +96,12 @@ def _noisy_record(
         rates = rates + model.gyroscope_density * white * rng.normal(size=rates.shape)
     orientation = record.orientation
     if orientation is not None:
-        orientation = _times(orientation, _quaternion(axis, model.misalignment_rad))
-    return SensorRecord(record.times_s + model.latency_s, force, rates, orientation)
+        orientation = product(orientation, about_axis(axis, model.misalignment_rad))
+    times_s = record.times_s + model.latency_s
+    return SensorRecord(times_s, force, rates, orientation, record.position)
 
 
 def _rotation(axis: Floats, angle: float) -> Floats:
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.asarray(np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross))
-
-
-def _quaternion(axis: Floats, angle: float) -> Floats:
-    return np.concatenate([[np.cos(angle / 2)], np.sin(angle / 2) * axis])
-
-
-def _times(left: Floats, right: Floats) -> Floats:
-    """Returns the quaternions (T, 4) times one quaternion, w x y z."""
-    w, v = left[:, :1], left[:, 1:]
-    return np.concatenate(
-        [w * right[0] - v @ right[1:, None], w * right[1:] + right[0] * v + np.cross(v, right[1:])],
-        axis=1,
-    )

@@ -10,15 +10,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from . import Motion, filtered_at, simulate
+from . import Motion, ReadingStream, SensorInput, simulate
 from .table_errors import TakeError
 from .take_file import read_columns, write_columns
 
 Floats = NDArray[np.float64]
 Path = str | os.PathLike[str]
-
-LONGEST_GAP_S = 0.1
-"""A sensor that is silent for longer than this has no reading in between."""
 
 __all__ = ["SensorRecord", "Take", "TakeError", "read_take", "resampled", "simulated", "write_take"]
 
@@ -35,6 +32,8 @@ class SensorRecord:
     """(T, 3) rad/s."""
     orientation: Floats | None = None
     """(T, 4) R_world_sensor, w x y z."""
+    position: Floats | None = None
+    """(T, 3) m, world."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +72,7 @@ def read_take(path: Path) -> Take:
             columns.specific_force[rows],
             None if columns.angular_velocity is None else columns.angular_velocity[rows],
             None if columns.orientation is None else columns.orientation[rows],
+            None if columns.position is None else columns.position[rows],
         )
     return Take(sensors, columns.comments)
 
@@ -80,7 +80,7 @@ def read_take(path: Path) -> Take:
 def write_take(path: Path, take: Take) -> None:
     """Writes a take file atomically, samples in the order of their times.
 
-    Gyroscope and orientation are written when every sensor has them.
+    Gyroscope, orientation and position are written when every sensor has them.
     """
     records = list(take.sensors.values())
     if not records:
@@ -100,6 +100,7 @@ def write_take(path: Path, take: Take) -> None:
         np.concatenate([record.specific_force for record in records])[order],
         stacked([record.angular_velocity for record in records]),
         stacked([record.orientation for record in records]),
+        stacked([record.position for record in records]),
         take.comments,
     )
 
@@ -107,42 +108,31 @@ def write_take(path: Path, take: Take) -> None:
 def resampled(take: Take, rate_hz: float) -> tuple[Floats, Floats]:
     """Returns evenly spaced times (T,) and the specific forces (T, S, 3) there, low-passed.
 
-    This is what a reconstruction takes: the same filter made the database. The times begin with
-    the take. Sensors come in the take's order; where one is silent, before its first sample, after
-    its last or for longer than LONGEST_GAP_S, its reading is NaN.
+    The same filter made the database. The times begin with the take. Sensors come in the take's
+    order; where one is silent, before its first sample, after its last or for longer than 0.1 s,
+    its reading is NaN.
     """
-    times = evenly(take, rate_hz)
-    parts = [filtered_channel(r.times_s, r.specific_force, times) for r in take.sensors.values()]
-    return times, np.stack(parts, axis=1)
-
-
-def evenly(take: Take, rate_hz: float) -> Floats:
-    """Returns evenly spaced times (T,) from the take's begin to its end."""
-    num_times = int((take.end_s - take.begin_s) * rate_hz + 1e-6) + 1
-    return take.begin_s + np.arange(num_times) / rate_hz
-
-
-def filtered_channel(times_s: Floats, values: Floats, wanted_s: Floats) -> Floats:
-    """Returns samples (T, 3) through the database's low-pass at other times; NaN in silences.
-
-    Samples that are not finite are none.
-    """
-    known = np.isfinite(values).all(axis=1)
-    if not known.any():
-        return np.full((len(wanted_s), 3), np.nan)
-    read = np.array(filtered_at(times_s[known], values[known], wanted_s))
-    read[_is_silent(times_s[known], wanted_s)] = np.nan
-    return read
+    stream = ReadingStream([SensorInput(site) for site in take.sites], rate_hz)
+    for index, record in enumerate(take.sensors.values()):
+        stream.push(index, record.times_s, record.specific_force)
+    read = stream.flush()
+    return read.times_s, read.specific_force
 
 
 def simulated(
     motion: Motion,
     sites: Sequence[str],
     rate_hz: float,
-    places: Sequence[float] | None = None,
+    positions_along_bone: Sequence[float] | None = None,
+    *,
+    with_position: bool = False,
 ) -> Take:
-    """Returns what ideal sensors read on a motion of the standard skeleton; times start at 0."""
-    read = simulate(motion, sites, rate_hz, places)
+    """Returns what ideal sensors read on a motion of the standard skeleton; times start at 0.
+
+    positions_along_bone: one a site, from 0 at the bone's pivot to 1, the default, at its end.
+    with_position: as tracked sensors also tell where they are.
+    """
+    read = simulate(motion, sites, rate_hz, positions_along_bone)
     return Take(
         {
             site: SensorRecord(
@@ -150,23 +140,8 @@ def simulated(
                 read["specific_force"][index],
                 read["angular_velocity"][index],
                 read["orientation"][index],
+                read["position"][index] if with_position else None,
             )
             for index, site in enumerate(sites)
         }
     )
-
-
-def _is_silent(times_s: Floats, wanted_s: Floats) -> NDArray[np.bool_]:
-    """Returns, for each time wanted, whether it lies in a gap of the sensor's samples."""
-    slack = 1e-6
-    edges = np.concatenate([[-np.inf], times_s, [np.inf]])
-    after = np.searchsorted(times_s, wanted_s, side="left") + 1
-    before_s, after_s = edges[after - 1], edges[after]
-    is_between = (wanted_s - before_s > slack) & (after_s - wanted_s > slack)
-    # A sensor that starts or ends a moment apart from the others is not silent for that moment.
-    gap_s = np.where(
-        np.isinf(before_s) | np.isinf(after_s),
-        np.minimum(wanted_s - before_s, after_s - wanted_s),
-        after_s - before_s,
-    )
-    return np.asarray(is_between & (gap_s > LONGEST_GAP_S + slack))

@@ -22,10 +22,13 @@ Path = str | os.PathLike[str]
 _REQUIRED = ("time_s", "sensor", "ax", "ay", "az")
 _GYROSCOPE = ("gx", "gy", "gz")
 _ORIENTATION = ("qw", "qx", "qy", "qz")
-_REMEDY = "the header is time_s,sensor,ax,ay,az with optional gx,gy,gz and qw,qx,qy,qz"
+_POSITION = ("px", "py", "pz")
+_OPTIONAL = (_GYROSCOPE, _ORIENTATION, _POSITION)
+_REMEDY = "the header is time_s,sensor,ax,ay,az with optional gx,gy,gz, qw,qx,qy,qz and px,py,pz"
 _LONGEST_NAME = 64
 _LONGEST_TAKE_S = 24 * 3600.0
 _LARGEST_FORCE = 1e4  # m/s^2, a thousand g
+_LARGEST_POSITION_M = 1e4
 
 
 @dataclass(frozen=True)
@@ -37,6 +40,7 @@ class TakeColumns:
     specific_force: Floats
     angular_velocity: Floats | None
     orientation: Floats | None
+    position: Floats | None
     comments: tuple[str, ...]
 
 
@@ -59,6 +63,7 @@ def read_columns(path: Path) -> TakeColumns:
         _stacked(rows, _REQUIRED[2:]),
         _stacked(rows, _GYROSCOPE) if "gx" in header else None,
         _stacked(rows, _ORIENTATION) if "qw" in header else None,
+        _stacked(rows, _POSITION) if "px" in header else None,
         comments,
     )
     _check_rows(path, columns, np.array(numbers[1:]))
@@ -72,12 +77,13 @@ def write_columns(
     specific_force: Floats,
     angular_velocity: Floats | None,
     orientation: Floats | None,
+    position: Floats | None,
     comments: Sequence[str],
 ) -> None:
     """Writes a take file atomically."""
     header = list(_REQUIRED)
     parts = [specific_force]
-    for names, part in ((_GYROSCOPE, angular_velocity), (_ORIENTATION, orientation)):
+    for names, part in zip(_OPTIONAL, (angular_velocity, orientation, position), strict=True):
         if part is not None:
             header += names
             parts.append(part)
@@ -94,9 +100,9 @@ def write_columns(
 
 def _checked_header(path: Path, line: int, text: str) -> list[str]:
     header = [name.strip() for name in text.split(",")]
-    known = (*_REQUIRED, *_GYROSCOPE, *_ORIENTATION)
+    known = (*_REQUIRED, *_GYROSCOPE, *_ORIENTATION, *_POSITION)
     missing = [name for name in _REQUIRED if name not in header]
-    for group in (_GYROSCOPE, _ORIENTATION):
+    for group in _OPTIONAL:
         if any(name in header for name in group):
             missing += [name for name in group if name not in header]
     unknown = [name for name in header if name not in known]
@@ -171,7 +177,8 @@ def _check_values(path: Path, columns: TakeColumns, lines: NDArray[np.intp]) -> 
             raise TakeError(path, int(lines[bad[0]]), problem)
 
     parts = [columns.times_s[:, None], columns.specific_force]
-    parts += [part for part in (columns.angular_velocity, columns.orientation) if part is not None]
+    optional = (columns.angular_velocity, columns.orientation, columns.position)
+    parts += [part for part in optional if part is not None]
     refuse(
         ~np.isfinite(np.column_stack(parts)).all(axis=1),
         "a value is not finite; leave out samples that are missing",
@@ -188,4 +195,9 @@ def _check_values(path: Path, columns: TakeColumns, lines: NDArray[np.intp]) -> 
         refuse(
             abs(np.linalg.norm(columns.orientation, axis=1) - 1) > 0.01,
             "qw,qx,qy,qz is not of length 1, so it is no rotation",
+        )
+    if columns.position is not None:
+        refuse(
+            (abs(columns.position) > _LARGEST_POSITION_M).any(axis=1),
+            f"px,py,pz is further away than {_LARGEST_POSITION_M:g} m; positions are in metres",
         )

@@ -9,20 +9,15 @@ namespace {
 // times_s (T,), specific_force (T, 3), angular_velocity (T, 3) or None.
 using BoundRecording = std::tuple<Doubles, Doubles, std::optional<Doubles>>;
 
-Eigen::Matrix3Xd columns(const Doubles& rows) {
-  // Row-major T x 3 is column-major 3 x T.
-  return Eigen::Map<const Eigen::Matrix3Xd>(rows.data(), 3, rows.shape(0));
-}
-
-SensorRecording recording_from(const BoundRecording& bound) {
+SensorRecording recording_of(const BoundRecording& bound) {
   const auto& [times_s, force, turn] = bound;
   require_shape(times_s, {-1}, "times_s");
   require_shape(force, {times_s.shape(0), 3}, "specific_force");
   if (turn) require_shape(*turn, {times_s.shape(0), 3}, "angular_velocity");
   SensorRecording out;
   out.times_s.assign(times_s.data(), times_s.data() + times_s.size());
-  out.specific_force = columns(force);
-  if (turn) out.angular_velocity = columns(*turn);
+  out.specific_force = columns_of(force);
+  if (turn) out.angular_velocity = columns_of(*turn);
   return out;
 }
 
@@ -35,9 +30,9 @@ py::dict told(const SensorCalibration& calibration) {
   py::dict out;
   out["scale"] = calibration.scale;
   out["R_site_sensor"] = rotation;
-  out["place"] = calibration.place;
+  out["position_along_bone"] = calibration.position_along_bone;
   out["is_mounting_determined"] = calibration.is_mounting_determined;
-  out["is_place_determined"] = calibration.is_place_determined;
+  out["is_position_determined"] = calibration.is_position_determined;
   auto bias = new_array({3});
   std::copy(calibration.gyroscope_bias.data(), calibration.gyroscope_bias.data() + 3,
             bias.mutable_data());
@@ -45,7 +40,7 @@ py::dict told(const SensorCalibration& calibration) {
   out["gravity"] = calibration.gravity;
   out["unrest_mps2"] = calibration.unrest_mps2;
   out["axis_ratio"] = calibration.axis_ratio;
-  out["place_deviation"] = calibration.place_deviation;
+  out["position_deviation"] = calibration.position_deviation;
   out["quality"] = calibration.quality;
   out["notes"] = calibration.notes;
   return out;
@@ -53,18 +48,18 @@ py::dict told(const SensorCalibration& calibration) {
 
 py::dict calibrate(const std::string& site, const std::string& pose, const BoundRecording& standing,
                    const std::vector<std::pair<std::string, BoundRecording>>& movements,
-                   double height_m, std::optional<double> default_place,
+                   double height_m, std::optional<double> default_position_along_bone,
                    const std::optional<Skeleton>& body) {
   std::vector<RecordedMovement> recorded;
   for (const auto& [name, recording] : movements)
-    recorded.push_back({&find_guided_movement(name), recording_from(recording)});
+    recorded.push_back({&find_guided_movement(name), recording_of(recording)});
   CalibrationSettings settings;
   settings.pose = find_standing_pose(pose);
   settings.height_m = height_m;
-  settings.default_place = default_place;
+  settings.default_position_along_bone = default_position_along_bone;
   if (body) settings.bones = bones_of(*body);
   return told(calibrate_sensor(all_sites()[static_cast<std::size_t>(find_site(site))],
-                               recording_from(standing), recorded, settings));
+                               recording_of(standing), recorded, settings));
 }
 
 }  // namespace
@@ -84,7 +79,7 @@ void bind_calibration(py::module_& m) {
     return out;
   });
   m.def("calibrate_sensor", &calibrate, py::arg("site"), py::arg("pose"), py::arg("standing"),
-        py::arg("movements"), py::arg("height_m"), py::arg("default_place"),
+        py::arg("movements"), py::arg("height_m"), py::arg("default_position_along_bone"),
         py::arg("body") = py::none());
 }
 

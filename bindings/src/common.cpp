@@ -3,40 +3,14 @@
 
 #include <utility>
 
-#include "sparse_mocap/sensors/sites.hpp"
 
 namespace sparse_mocap::python {
-namespace {
-
-std::string shape_text(const std::vector<py::ssize_t>& shape) {
-  std::string text = "(";
-  for (std::size_t i = 0; i < shape.size(); ++i)
-    text += (i == 0 ? "" : ", ") + (shape[i] < 0 ? std::string("any") : std::to_string(shape[i]));
-  return text + ")";
-}
-
-}  // namespace
-
-void require_shape(const Doubles& array, const std::vector<py::ssize_t>& expected,
-                   const char* name) {
-  const std::vector<py::ssize_t> shape(array.shape(), array.shape() + array.ndim());
-  bool is_right = shape.size() == expected.size();
-  for (std::size_t i = 0; is_right && i < shape.size(); ++i)
-    is_right = expected[i] < 0 || shape[i] == expected[i];
-  if (!is_right)
-    throw py::value_error(std::string(name) + " must have shape " + shape_text(expected) +
-                          ", got " + shape_text(shape));
-}
 
 py::str text_of(const std::string& text) {
   PyObject* decoded =
       PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace");
   if (decoded == nullptr) throw py::error_already_set();
   return py::reinterpret_steal<py::str>(decoded);
-}
-
-py::array_t<double> new_array(const std::vector<py::ssize_t>& shape) {
-  return py::array_t<double>(shape);
 }
 
 Progress progress_from(const std::optional<py::function>& callback,
@@ -50,37 +24,6 @@ Progress progress_from(const std::optional<py::function>& callback,
         (*callback)(report.done, report.total, text_of(std::string(report.what)));
     return answer.is_none() || answer.cast<bool>();
   });
-}
-
-std::vector<Reading> readings_from(const Doubles& specific_force, std::size_t num_sensors) {
-  require_shape(specific_force, {-1, static_cast<py::ssize_t>(num_sensors), 3}, "specific_force");
-  const auto values = specific_force.unchecked<3>();
-  std::vector<Reading> take;
-  for (py::ssize_t t = 0; t < values.shape(0); ++t) {
-    Reading reading(3, values.shape(1));
-    for (py::ssize_t s = 0; s < values.shape(1); ++s)
-      for (py::ssize_t k = 0; k < 3; ++k) reading(k, s) = values(t, s, k);
-    take.push_back(std::move(reading));
-  }
-  return take;
-}
-
-std::vector<WornSensor> sensors_from(const std::vector<std::string>& sites,
-                                     const std::optional<std::vector<double>>& places,
-                                     const std::optional<std::vector<std::string>>& quantities) {
-  if (places && places->size() != sites.size())
-    throw py::value_error("places must have one entry a site");
-  if (quantities && quantities->size() != sites.size())
-    throw py::value_error("quantities must have one entry a site");
-  std::vector<WornSensor> sensors;
-  for (std::size_t s = 0; s < sites.size(); ++s) {
-    const std::string quantity = quantities ? (*quantities)[s] : "specific_force";
-    if (quantity != "specific_force" && quantity != "up")
-      throw py::value_error("a quantity is 'specific_force' or 'up', not '" + quantity + "'");
-    sensors.push_back({find_site(sites[s]), places ? (*places)[s] : 1.0,
-                       quantity == "up" ? Quantity::up : Quantity::specific_force});
-  }
-  return sensors;
 }
 
 }  // namespace sparse_mocap::python

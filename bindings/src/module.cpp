@@ -14,7 +14,10 @@ PYBIND11_MODULE(_core, m) {
   python::bind_streams(m);
   python::bind_calibration(m);
   python::bind_timing(m);
+  python::bind_rotations(m);
+  python::bind_readings(m);
   python::bind_database(m);
   python::bind_database_import(m);
   python::bind_reconstruction(m);
+  python::bind_baselines(m);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common.hpp"
+#include "sparse_mocap/base/quaternions.hpp"
 #include "sparse_mocap/sensors/filter.hpp"
 #include "sparse_mocap/sensors/virtual_sensor.hpp"
 
@@ -30,15 +31,16 @@ void copy_orientation(const std::vector<Mat3>& R_world_sensor, const Motion& mot
     const Quat q = Quat(R_world_sensor[frame])
                        .slerp(std::min(position - static_cast<double>(frame), 1.0),
                               Quat(R_world_sensor[std::min(frame + 1, last)]));
-    for (const double value : {q.w(), q.x(), q.y(), q.z()}) *out++ = value;
+    const Eigen::Vector4d wxyz = wxyz_of(q);
+    out = std::copy(wxyz.begin(), wxyz.end(), out);
   }
 }
 
 py::dict simulate(const Motion& motion, const std::vector<std::string>& site_names, double rate_hz,
-                  const std::optional<std::vector<double>>& places) {
+                  const std::optional<std::vector<double>>& positions_along_bone) {
   if (!(rate_hz > 0.0)) throw py::value_error("rate_hz must be positive");
   if (motion.num_frames() < 3) throw py::value_error("the motion has fewer than 3 frames");
-  const auto sensors = sensors_from(site_names, places);
+  const auto sensors = sensors_from(site_names, positions_along_bone);
   std::vector<Site> sites;
   for (const auto& sensor : sensors)
     sites.push_back(all_sites()[static_cast<std::size_t>(sensor.site)]);
@@ -52,20 +54,23 @@ py::dict simulate(const Motion& motion, const std::vector<std::string>& site_nam
   const auto s = static_cast<py::ssize_t>(sites.size());
   py::array_t<double> time_s(n);
   std::copy(times.begin(), times.end(), time_s.mutable_data());
-  auto force = new_array({s, n, 3}), turn = new_array({s, n, 3}),
+  auto force = new_array({s, n, 3}), turn = new_array({s, n, 3}), position = new_array({s, n, 3}),
        orientation = new_array({s, n, 4});
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const auto at = static_cast<py::ssize_t>(i);
     const Eigen::MatrixXd f = sampled(readings[i].specific_force(sensors[i].place), motion, times);
     const Eigen::MatrixXd w = sampled(readings[i].angular_velocity, motion, times);
+    const Eigen::MatrixXd p = sampled(readings[i].position(sensors[i].place), motion, times);
     std::copy(f.data(), f.data() + f.size(), force.mutable_data(at, 0, 0));
     std::copy(w.data(), w.data() + w.size(), turn.mutable_data(at, 0, 0));
+    std::copy(p.data(), p.data() + p.size(), position.mutable_data(at, 0, 0));
     copy_orientation(readings[i].R_world_sensor, motion, times, orientation.mutable_data(at, 0, 0));
   }
   py::dict out;
   out["time_s"] = time_s;
   out["specific_force"] = force;
   out["angular_velocity"] = turn;
+  out["position"] = position;
   out["orientation"] = orientation;
   return out;
 }
@@ -76,17 +81,9 @@ py::array_t<double> filtered(const Doubles& times_s, const Doubles& values,
   require_shape(values, {times_s.shape(0), -1}, "values");
   require_shape(wanted_s, {-1}, "wanted_s");
   if (times_s.shape(0) == 0) throw py::value_error("times_s is empty");
-  // Row-major T x C is column-major C x T.
-  const Eigen::MatrixXd columns =
-      Eigen::Map<const Eigen::MatrixXd>(values.data(), values.shape(1), values.shape(0));
-  const auto span = [](const Doubles& array) {
-    return std::span<const double>(array.data(), static_cast<std::size_t>(array.size()));
-  };
   const Eigen::MatrixXd result =
-      filtered_at(span(times_s), columns, span(wanted_s), kReadingFilter);
-  auto out = new_array({result.cols(), result.rows()});
-  std::copy(result.data(), result.data() + result.size(), out.mutable_data());
-  return out;
+      filtered_at(span_of(times_s), columns_of(values), span_of(wanted_s), kReadingFilter);
+  return rows_of(result);
 }
 
 }  // namespace
@@ -99,7 +96,7 @@ void bind_sensors(py::module_& m) {
     return names;
   });
   m.def("simulate", &simulate, py::arg("motion"), py::arg("sites"), py::arg("rate_hz"),
-        py::arg("places") = py::none());
+        py::arg("positions_along_bone") = py::none());
   m.def("filtered_at", &filtered, py::arg("times_s"), py::arg("values"), py::arg("wanted_s"));
 }
 

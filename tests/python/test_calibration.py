@@ -23,7 +23,7 @@ from sparse_mocap.calibration import (
     assign_by_shaking,
     calibrate,
     guided_movements,
-    places_of,
+    positions_along_bone,
 )
 from sparse_mocap.calibration_file import (
     CalibrationFileError,
@@ -115,8 +115,8 @@ def test_mounting_scale_and_place_are_recovered(turned_deg: float, noise: float,
         assert np.degrees(off.magnitude()) < 3.0
         assert sensor.scale == pytest.approx(wearer.scales[site], rel=0.01)
         assert sensor.is_mounting_determined
-        assert sensor.is_place_determined, sensor.notes
-        assert sensor.place == pytest.approx(wearer.places[site], abs=0.1)
+        assert sensor.is_position_determined, sensor.notes
+        assert sensor.position_along_bone == pytest.approx(wearer.places[site], abs=0.1)
         assert sensor.quality > 0.6
     assert found.notes == []
 
@@ -126,10 +126,12 @@ def test_places_refer_to_the_wearer_s_own_bones() -> None:
     wearer = Wearer(10.0, 0.0, 2)
     tall = calibrate(wearer.take, STEPS, height_m=1.2 * 1.75)
     for site in ("left_wrist", "right_wrist"):
-        assert tall.sensors[site].place == pytest.approx(wearer.places[site] / 1.2, abs=0.05)
+        assert tall.sensors[site].position_along_bone == pytest.approx(
+            wearer.places[site] / 1.2, abs=0.05
+        )
     for site in ("left_ankle", "right_ankle"):
         expected = 1 - (1 - wearer.places[site]) / 1.2
-        assert tall.sensors[site].place == pytest.approx(expected, abs=0.05)
+        assert tall.sensors[site].position_along_bone == pytest.approx(expected, abs=0.05)
 
 
 def test_the_point_that_stayed_still_is_found_whatever_was_asked_for(
@@ -140,8 +142,8 @@ def test_the_point_that_stayed_still_is_found_whatever_was_asked_for(
     monkeypatch.setitem(STILL, "wrist", -0.28 / BONES["wrist"])
     wearer = Wearer(20.0, 0.0, 7)
     for site, sensor in calibrate(wearer.take, STEPS).sensors.items():
-        assert sensor.is_place_determined
-        assert sensor.place == pytest.approx(wearer.places[site], abs=0.1)
+        assert sensor.is_position_determined
+        assert sensor.position_along_bone == pytest.approx(wearer.places[site], abs=0.1)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -153,7 +155,7 @@ def test_accelerations_alone_give_the_mounting_and_say_so_of_the_place(seed: int
         off = wearer.turns[site].inv() * Rotation.from_matrix(sensor.R_site_sensor)
         assert np.degrees(off.magnitude()) < 5.0
         assert sensor.scale == pytest.approx(wearer.scales[site], rel=0.01)
-        assert not sensor.is_place_determined
+        assert not sensor.is_position_determined
         assert any("takes a gyroscope" in note for note in sensor.notes)
 
 
@@ -161,7 +163,9 @@ def test_applied_a_calibration_gives_what_ideal_sensors_read() -> None:
     wearer = Wearer(30.0, 0.0, 3)
     found = calibrate(wearer.take, STEPS)
     told = apply(found, wearer.take)
-    assert places_of(found, wearer.take) == [s.place for s in found.sensors.values()]
+    assert positions_along_bone(found, wearer.take) == [
+        s.position_along_bone for s in found.sensors.values()
+    ]
     for site, ideal in wearer.ideal.items():
         record = told.sensors[site]
         assert record.angular_velocity is not None
@@ -183,7 +187,7 @@ def test_a_movement_that_shows_no_axis_is_said_to_show_none() -> None:
     found = calibrate(wearer.take, STEPS)
     for sensor in found.sensors.values():
         assert not sensor.is_mounting_determined
-        assert not sensor.is_place_determined
+        assert not sensor.is_position_determined
         assert any("do not determine how it is turned" in note for note in sensor.notes)
         assert sensor.quality < 0.3
 
@@ -282,11 +286,34 @@ def test_what_is_written_is_read_again(tmp_path: Path) -> None:
     for name, sensor in found.sensors.items():
         np.testing.assert_allclose(again.sensors[name].R_site_sensor, sensor.R_site_sensor)
         np.testing.assert_allclose(again.sensors[name].gyroscope_bias, sensor.gyroscope_bias)
-        assert again.sensors[name].place == sensor.place
+        assert again.sensors[name].position_along_bone == sensor.position_along_bone
         assert again.sensors[name].notes == sensor.notes
 
 
-SENSOR = {"site": "head", "scale": 1.0, "R_site_sensor": np.eye(3).tolist(), "place": 1.0}
+def test_a_file_of_the_first_format_is_read(tmp_path: Path) -> None:
+    sensor = {"site": "head", "scale": 9.8, "R_site_sensor": np.eye(3).tolist(), "place": 0.25,
+              "is_place_determined": False, "place_deviation": 0.5}  # fmt: skip
+    path = tmp_path / "c.json"
+    path.write_text(
+        json.dumps({"format": "sparse_mocap_calibration", "sensors": {"a": sensor}}),
+        encoding="utf-8",
+    )
+    read = read_calibration(path).sensors["a"]
+    assert (read.position_along_bone, read.is_position_determined) == (0.25, False)
+    assert read.position_deviation == 0.5
+    write_calibration(path, read_calibration(path))
+    again = json.loads(path.read_text(encoding="utf-8"))
+    assert again["format_version"] == 2
+    assert again["sensors"]["a"]["position_along_bone"] == 0.25
+    assert "place" not in again["sensors"]["a"]
+
+
+SENSOR = {
+    "site": "head",
+    "scale": 1.0,
+    "R_site_sensor": np.eye(3).tolist(),
+    "position_along_bone": 1.0,
+}
 
 
 @pytest.mark.parametrize(
@@ -296,16 +323,18 @@ SENSOR = {"site": "head", "scale": 1.0, "R_site_sensor": np.eye(3).tolist(), "pl
         ({"site": "nose"}, "sensors.a.site is 'nose', which is no site"),
         ({"scale": "1"}, "sensors.a.scale must be a number"),
         ({"scale": 0}, "sensors.a.scale is 0; it must be from 0.01"),
-        ({"place": 1.5}, "sensors.a.place is 1.5; it must be from 0 to 1"),
+        ({"position_along_bone": 1.5}, "sensors.a.position_along_bone is 1.5; it must be from 0"),
+        ({"place": 0.5}, "sensors.a.place is unknown; the nearest is"),
         ({"R_site_sensor": [[1, 0], [0, 1]]}, "numbers in the shape"),
         ({"R_site_sensor": np.diag([1, 1, -1]).tolist()}, "is no rotation .determinant -1"),
         ({"notes": "x"}, "notes must be a list"),
-        ({"is_place_determined": 1}, "must be true or false"),
+        ({"is_position_determined": 1}, "must be true or false"),
     ],
 )
 def test_a_broken_file_is_refused_by_key(tmp_path: Path, change: dict, told: str) -> None:
     path = tmp_path / "c.json"
-    whole = {"format": "sparse_mocap_calibration", "sensors": {"a": SENSOR | change}}
+    whole: dict = {"format": "sparse_mocap_calibration", "format_version": 2}
+    whole["sensors"] = {"a": SENSOR | change}
     path.write_text(json.dumps(whole), encoding="utf-8")
     with pytest.raises(CalibrationFileError, match=told):
         read_calibration(path)
@@ -319,6 +348,10 @@ def test_a_broken_file_is_refused_by_key(tmp_path: Path, change: dict, told: str
         ("[]", "is no calibration"),
         ('{"format": "sparse_mocap_calibration"}', "sensors is missing"),
         ('{"format": "sparse_mocap_calibration", "sensors": {}}', "a sensor or more"),
+        (
+            '{"format": "sparse_mocap_calibration", "format_version": 3, "sensors": {}}',
+            "format_version is 3; this version of Sparse Mocap reads 1 to 2",
+        ),
         ('{"format": 1, "format": 2}', "repeats the key 'format'"),
     ],
 )
@@ -336,10 +369,10 @@ def test_the_command_line_calibrates_and_reconstructs(
     take, out = tmp_path / "take.csv", tmp_path / "c.json"
     write_take(take, wearer.take)
     result = cli("calibrate", take, "-o", out, "--stand", "0:3", "--arms", "4:12",
-                 "--legs", "13:21", "--place", "left_ankle=0.4")  # fmt: skip
+                 "--legs", "13:21", "--position-along-bone", "left_ankle=0.4")  # fmt: skip
     assert result.exit_code == 0, result.output
     assert "left_wrist" in result.output
-    assert read_calibration(out).sensors["left_ankle"].place == 0.4
+    assert read_calibration(out).sensors["left_ankle"].position_along_bone == 0.4
     report = tmp_path / "r.json"
     result = cli("reconstruct", "--database", database_path, take, "-o", tmp_path / "m.bvh",
                  "--calibration", out, "--json", report)  # fmt: skip

@@ -40,7 +40,7 @@ def test_sensors_on_a_whole_body_are_calibrated(performance: Path, seed: int) ->
         error = (Rotation.from_matrix(sensor.R_site_sensor) * turned[i].inv()).magnitude()
         assert np.degrees(error) < 5.0, site
         assert sensor.scale == pytest.approx(scales[i], rel=0.01)
-        if sensor.is_place_determined:
-            assert sensor.place == pytest.approx(places[i], abs=0.1), site
+        if sensor.is_position_determined:
+            assert sensor.position_along_bone == pytest.approx(places[i], abs=0.1), site
         else:
             assert any("place" in note for note in sensor.notes)

@@ -22,7 +22,7 @@ from sparse_mocap import (
     build_database,
     readings_of,
 )
-from sparse_mocap.calibration import Calibration, Steps, apply, calibrate, places_of
+from sparse_mocap.calibration import Calibration, Steps, apply, calibrate, positions_along_bone
 
 WORN = {
     "left_wrist": "forearm_left",
@@ -105,7 +105,7 @@ def test_boxes_turned_by_half_a_right_angle_are_found(
         off = (R_site_segment * R_segment_box).inv() * Rotation.from_matrix(found.R_site_sensor)
         assert np.degrees(off.magnitude()) < 15.0
         assert found.is_mounting_determined
-        assert not found.is_place_determined  # nothing stays still while running
+        assert not found.is_position_determined  # nothing stays still while running
 
 
 def test_limbs_point_where_the_reference_says(
@@ -126,7 +126,7 @@ def test_limbs_point_where_the_reference_says(
         readings = readings_of(
             worn,
             database.rate_hz,
-            places=places_of(calibration, take),
+            places=positions_along_bone(calibration, take),
             offline=offline,
             uses_gyroscopes=uses_gyroscopes,
         )

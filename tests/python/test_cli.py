@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import Result
+from scipy.spatial.transform import Rotation
 from sparse_mocap import (
     MotionDatabase,
     SensorRecord,
@@ -151,11 +152,44 @@ def test_simulate_is_repeatable_noise(cli: Cli, performance: Path, tmp_path: Pat
     assert a == b != c
 
 
-def test_a_place_on_the_bone_changes_the_reading(
+def test_positions_are_simulated_when_asked_for(
+    cli: Cli, performance: Path, tmp_path: Path
+) -> None:
+    path = tmp_path / "t.csv"
+    cli("simulate", performance, "-o", path, "--sites", "head,left_ankle", "--with-positions")
+    for site, record in read_take(path).sensors.items():
+        assert record.position is not None
+        assert record.orientation is not None
+        height_m = 1.3 if site == "head" else 0.0
+        assert (record.position[:, 1] > height_m).all(), site
+        # Differentiated twice it is the specific force, turned into the world, without gravity.
+        turns = Rotation.from_quat(np.roll(record.orientation, -1, axis=1))
+        acceleration = turns.apply(record.specific_force) - [0.0, 9.81, 0.0]
+        velocity = np.gradient(record.position, record.times_s, axis=0)
+        change = velocity[150] - velocity[50]
+        assert acceleration[50:150].sum(axis=0) * 0.01 == pytest.approx(change, abs=0.25), site
+
+
+def test_the_old_name_of_a_position_along_the_bone_says_the_new_one(
+    cli: Cli, performance: Path, tmp_path: Path
+) -> None:
+    for name, option in (("old", "--place"), ("new", "--position-along-bone")):
+        path = tmp_path / f"{name}.csv"
+        result = cli("simulate", performance, "-o", path, option, "left_ankle=0.4")
+        assert result.exit_code == 0, result.output
+        assert ("write --position-along-bone left_ankle=0.4" in result.output) == (name == "old")
+    assert (tmp_path / "old.csv").read_bytes() == (tmp_path / "new.csv").read_bytes()
+    assert "--place" not in cli("simulate", "--help").output
+
+
+def test_a_position_along_the_bone_changes_the_reading(
     cli: Cli, performance: Path, tmp_path: Path
 ) -> None:
     cli("simulate", performance, "-o", tmp_path / "end.csv")
-    cli("simulate", performance, "-o", tmp_path / "mid.csv", "--place", "left_ankle=0.4")
+    cli(
+        "simulate", performance, "-o", tmp_path / "mid.csv",
+        "--position-along-bone", "left_ankle=0.4",
+    )  # fmt: skip
     end, mid = read_take(tmp_path / "end.csv"), read_take(tmp_path / "mid.csv")
     for site in end.sites:
         is_same = np.allclose(end.sensors[site].specific_force, mid.sensors[site].specific_force)

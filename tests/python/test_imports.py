@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from sparse_mocap import SensorRecord, Take, read_take, write_take
 from sparse_mocap.imports import RecordingError, read_recording
-from sparse_mocap.imports.rotations import from_matrices, from_z_up, into_sensor
+from sparse_mocap.rotations import from_z_up, inverse, product, rotated, rotations_from_matrices
 
 Cli = Callable[..., Result]
 Floats = NDArray[np.float64]
@@ -80,10 +80,13 @@ def test_the_values_are_those_of_the_file(real_data: Path) -> None:
 def test_rotations_are_those_of_scipy() -> None:
     turns = Rotation.random(200, random_state=3)
     scalar_first = turns.as_quat()[:, [3, 0, 1, 2]]
-    found = from_matrices(turns.as_matrix())
+    found = rotations_from_matrices(turns.as_matrix())
     np.testing.assert_allclose(np.abs(np.sum(found * scalar_first, axis=1)), 1.0, atol=1e-9)
     vectors = np.random.default_rng(3).normal(size=(200, 3))
-    np.testing.assert_allclose(into_sensor(scalar_first, vectors), turns.inv().apply(vectors))
+    np.testing.assert_allclose(rotated(inverse(scalar_first), vectors), turns.inv().apply(vectors))
+    both = (turns * turns[7]).as_quat()[:, [3, 0, 1, 2]]
+    found = product(scalar_first, scalar_first[7])
+    np.testing.assert_allclose(np.abs(np.sum(found * both, axis=1)), 1.0, atol=1e-12)
     z_up = from_z_up(scalar_first)
     np.testing.assert_allclose(
         Rotation.from_quat(z_up[:, [1, 2, 3, 0]]).apply(vectors),

@@ -8,18 +8,102 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import Rotation, Slerp
 from sparse_mocap import (
+    CHANNEL_NAMES,
     GRAVITY_MPS2,
-    InclinationFilter,
     MotionDatabase,
     Reconstructor,
+    SensorRecord,
     Take,
-    inclinations,
+    gravity_directions,
     read_take,
     readings_of,
     resampled,
 )
+from sparse_mocap.calibration import sensor_inputs
+from sparse_mocap.readings import all_readings, channels_in
+
+
+class Oracle:
+    """What readings are by definition, in NumPy."""
+
+    LONGEST_GAP_S = 0.1
+    SIGMA_S = 0.0115
+
+    def __init__(self, times_s: np.ndarray, values: np.ndarray) -> None:
+        known = np.isfinite(values).all(axis=1)
+        self.times_s, self.values = times_s[known], values[known]
+
+    def at(self, wanted_s: np.ndarray) -> np.ndarray:
+        if not len(self.times_s):
+            return np.full((len(wanted_s), 3), np.nan)
+        z = (self.times_s - wanted_s[:, None]) / self.SIGMA_S
+        weights = np.where(np.abs(z) <= 3.0, np.exp(-0.5 * z**2), 0.0)
+        beside = [np.interp(wanted_s, self.times_s, column) for column in self.values.T]
+        is_alone = (weights > 0).sum(axis=1) < 2
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = weights @ self.values / weights.sum(axis=1)[:, None]
+        read = np.where(is_alone[:, None], np.stack(beside, axis=1), mean)
+        return np.where(self.is_silent(wanted_s)[:, None], np.nan, read)
+
+    def is_silent(self, wanted_s: np.ndarray) -> np.ndarray:
+        ends = np.concatenate([[-np.inf], self.times_s, [np.inf]])
+        after = np.searchsorted(self.times_s, wanted_s) + 1
+        before_s, after_s = wanted_s - ends[after - 1], ends[after] - wanted_s
+        gap_s = np.where(
+            np.isinf(before_s) | np.isinf(after_s),
+            np.minimum(before_s, after_s),
+            before_s + after_s,
+        )
+        is_between = (before_s > 1e-6) & (after_s > 1e-6)
+        return is_between & (gap_s > self.LONGEST_GAP_S + 1e-6)
+
+
+def directions_both_ways(record: SensorRecord) -> np.ndarray:
+    """Gravity averaged over the samples around each, in the frame that the gyroscope carries."""
+    times_s, forces, rates = record.times_s, record.specific_force, record.angular_velocity
+    assert rates is not None
+    found = np.full((len(times_s), 3), np.nan)
+    known = np.flatnonzero(np.isfinite(np.hstack([forces, rates])).all(axis=1))
+    for part in np.split(known, np.flatnonzero(np.diff(times_s[known]) > 0.25) + 1):
+        steps = np.diff(times_s[part])[:, None] * (rates[part][1:] + rates[part][:-1]) / 2
+        turns = [Rotation.identity()]
+        for step in steps:
+            turns.append(turns[-1] * Rotation.from_rotvec(step))
+        held = Rotation.concatenate(turns)
+        weights = np.exp(-np.abs(times_s[part][:, None] - times_s[part]) / 3.0)
+        up = held.inv().apply(weights @ held.apply(forces[part]))
+        found[part] = up / np.linalg.norm(up, axis=1, keepdims=True)
+    return found
+
+
+def broken_record(seed: int, begin_s: float, length_s: float) -> SensorRecord:
+    """Irregular samples with a gap, some of which are not finite, so the first and the last."""
+    source = np.random.default_rng(seed)
+    times_s = begin_s + np.cumsum(source.uniform(0.004, 0.016, int(length_s * 100)))
+    times_s = np.delete(times_s, slice(150, 190))
+    forces = np.array([0.0, 9.81, 0.0]) + source.normal(size=(len(times_s), 3))
+    rates = source.normal(size=(len(times_s), 3))
+    for values in (forces, rates):
+        values[source.random(len(times_s)) < 0.03, 1] = np.nan
+    forces[:12] = forces[-30:] = np.nan
+    return SensorRecord(times_s, forces, rates)
+
+
+def test_readings_are_those_of_the_definition() -> None:
+    take = Take({"head": broken_record(1, 5.0, 6.0), "chest": broken_record(2, 6.5, 3.0)})
+    for rate_hz in (25.0, 40.0):
+        readings = readings_of(take, rate_hz, offline=True)
+        num_times = int((take.end_s - take.begin_s) * rate_hz + 1e-6) + 1
+        assert np.array_equal(readings.times_s, take.begin_s + np.arange(num_times) / rate_hz)
+        for index, record in enumerate(take.sensors.values()):
+            for channel, values in (
+                (index, record.specific_force), (2 + index, directions_both_ways(record))
+            ):  # fmt: skip
+                wanted = Oracle(record.times_s, values).at(readings.times_s)
+                assert np.isnan(wanted).any()
+                np.testing.assert_allclose(readings.values[:, channel], wanted, atol=1e-9)
 
 
 @pytest.fixture
@@ -45,8 +129,11 @@ def test_directions_are_those_that_the_take_was_simulated_with(
     take: Take, offline: bool, largest_deg: float
 ) -> None:
     for site, record in take.sensors.items():
-        found = inclinations(
-            record.times_s, record.specific_force, record.angular_velocity, offline=offline
+        found = gravity_directions(
+            record.times_s,
+            record.specific_force,
+            record.angular_velocity,
+            average="whole_take" if offline else "causal",
         )
         known = np.isfinite(found).all(axis=1)
         assert known[record.times_s >= record.times_s[0] + 0.51].all()
@@ -57,18 +144,30 @@ def test_directions_are_those_that_the_take_was_simulated_with(
         assert np.nanmean(off) < naive.mean(), site
 
 
-def test_the_filter_answers_as_the_recording_does(take: Take) -> None:
-    record = take.sensors["left_wrist"]
-    assert record.angular_velocity is not None
-    one_by_one = InclinationFilter()
-    answers = [
-        one_by_one.update(t, f, w)
-        for t, f, w in zip(
-            record.times_s, record.specific_force, record.angular_velocity, strict=True
-        )
-    ]
-    whole = inclinations(record.times_s, record.specific_force, record.angular_velocity)
-    assert np.array_equal(answers, whole, equal_nan=True)
+def test_every_channel_of_a_take_is_read(take: Take) -> None:
+    site, record = next(iter(take.sensors.items()))
+    way = np.stack([record.times_s, 2 * record.times_s, np.ones(len(record.times_s))], axis=1)
+    tracked = Take({site: replace(record, position=way), "head": record})
+    channels = [channels_in(each) for each in tracked.sensors.values()]
+    assert channels[0] == list(CHANNEL_NAMES)
+    assert channels[1] == [name for name in CHANNEL_NAMES if name != "position"]
+    sensors = sensor_inputs(None, tracked.sites, channels)
+    read = all_readings(tracked, sensors, 20.0, tracker_yaw_rad=np.pi, tracker_origin_m=[0, 0, 3])
+    assert (read.sites, read.positions_along_bone) == ([site, "head"], [1.0, 1.0])
+    assert read.channels == channels
+    inner = slice(2, -2)
+    times_s = read.times_s[inner]
+    turned = np.stack([-times_s, 2 * times_s, np.full(len(times_s), 2.0)], axis=1)
+    np.testing.assert_allclose(read.position[inner, 0], turned, atol=1e-6)
+    assert np.isnan(read.position[:, 1]).all()
+    samples = Rotation.from_quat(np.roll(record.orientation, -1, axis=1))
+    wanted = Rotation.from_euler("y", np.pi) * Slerp(record.times_s, samples)(times_s)
+    found = Rotation.from_quat(np.roll(read.orientation[inner, 0], -1, axis=1))
+    assert (wanted.inv() * found).magnitude().max() < 1e-6
+    part = read[3:6]
+    assert len(part) == 3
+    assert np.array_equal(part.angular_velocity, read.angular_velocity[3:6])
+    assert np.array_equal(read[-1].times_s, read.times_s[-1:])
 
 
 def test_without_gyroscopes_all_is_as_it_was(take: Take, database: MotionDatabase) -> None:

@@ -29,6 +29,7 @@ def record(times: np.ndarray, seed: int = 0) -> SensorRecord:
         rng.normal(size=(len(times), 3)),
         rng.normal(size=(len(times), 3)),
         turns / np.linalg.norm(turns, axis=1, keepdims=True),
+        rng.normal(size=(len(times), 3)),
     )
 
 
@@ -45,7 +46,7 @@ def test_what_is_written_is_read_again(tmp_path: Path) -> None:
     assert again.comments == ("a note",)
     for site, old in take.sensors.items():
         new = again.sensors[site]
-        for name in ("times_s", "specific_force", "angular_velocity", "orientation"):
+        for name in ("times_s", "specific_force", "angular_velocity", "orientation", "position"):
             np.testing.assert_allclose(getattr(new, name), getattr(old, name), atol=6e-7)
 
 
@@ -56,6 +57,17 @@ def test_accelerometers_alone_make_a_take(tmp_path: Path) -> None:
     again = read_take(tmp_path / "take.csv").sensors["head"]
     assert again.angular_velocity is None
     assert again.orientation is None
+    assert again.position is None
+
+
+def test_positions_need_nothing_but_forces_beside_them(tmp_path: Path) -> None:
+    path = tmp_path / "take.csv"
+    path.write_text("px,pz,py,time_s,sensor,ax,ay,az\n1,3,2,0,head,0,0,9.81\n", encoding="utf-8")
+    head = read_take(path).sensors["head"]
+    assert head.position is not None
+    assert head.position.tolist() == [[1.0, 2.0, 3.0]]
+    write_take(path, Take({"head": head, "chest": still(np.zeros(1))}))  # which was not tracked
+    assert read_take(path).sensors["head"].position is None
 
 
 def test_a_take_without_sensors_is_not_written(tmp_path: Path) -> None:
@@ -114,6 +126,12 @@ BAD = {
         b"time_s,sensor,ax,ay,az,qw,qx,qy,qz\n0,head,1,2,3,1,1,0,0\n",
         2,
         "no rotation",
+    ),
+    "half a position": (b"time_s,sensor,ax,ay,az,px,pz\n", 1, "column py is missing"),
+    "position in millimetres": (
+        b"time_s,sensor,ax,ay,az,px,py,pz\n0,head,1,2,3,0,12000,0\n",
+        2,
+        "positions are in metres",
     ),
     "utf-16": (HEADER.encode("utf-16"), 0, "UTF-16"),
     "latin-1": (HEADER.encode() + b"# caf\xe9\n0,head,1,2,3\n", 2, "not UTF-8"),

@@ -10,7 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import Result
-from sparse_mocap import Resampler, SensorRecord, Take, read_motion, resampled, write_take
+from sparse_mocap import (
+    ReadingStream,
+    SensorInput,
+    SensorRecord,
+    Take,
+    read_motion,
+    resampled,
+    write_take,
+)
 from sparse_mocap.alignment import AlignmentError, aligned
 
 
@@ -33,7 +41,7 @@ def test_live_and_recorded_readings_are_the_same() -> None:
           for part in (sensors["head"].times_s, sensors["head"].specific_force))
     )  # fmt: skip
     times, readings = resampled(Take(sensors), 25.0)
-    live = Resampler(2, 25.0)
+    live = ReadingStream([SensorInput(site) for site in sensors], 25.0)
     samples = sorted(
         (time, index, tuple(force))
         for index, sensor in enumerate(sensors.values())
@@ -41,9 +49,9 @@ def test_live_and_recorded_readings_are_the_same() -> None:
     )
     frames = []
     for time, index, force in samples:
-        assert live.push(index, time, force)
-        frames += [(at, rows, time) for at, rows in live.frames_until(time)]
-    frames += [(at, rows, np.inf) for at, rows in live.flush()]
+        assert live.push(index, [time], [force]) == 1
+        frames += [(each.times_s[0], each.specific_force[0], time) for each in live.ready(time)]
+    frames += [(each.times_s[0], each.specific_force[0], np.inf) for each in live.flush()]
     assert len(frames) == len(times)
     np.testing.assert_allclose([at for at, _, _ in frames], times, atol=1e-9)
     np.testing.assert_array_equal(np.array([rows for _, rows, _ in frames]), readings)

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import LARGEST_CLOCK_DRIFT, host_times
 from ..take import SensorRecord, Take
-from .clocks import LARGEST_DRIFT, host_times
 from .config import CaptureConfig
 from .decoder import Decoder
 from .errors import RecordingError
@@ -63,7 +63,7 @@ class RecordedTake:
             lines.append(f"nobody said where the sensors are worn; took {told} (see --sites)")
         if self.num_missing:
             lines.append(f"{self.num_missing} samples were lost before they arrived")
-        odd = [rate for rate in self.clock_rates if abs(rate - 1.0) > LARGEST_DRIFT]
+        odd = [rate for rate in self.clock_rates if abs(rate - 1.0) > LARGEST_CLOCK_DRIFT]
         if odd:
             lines.append(f"a device's clock is {1 / odd[0]:.2f} times too fast; its times are kept")
         return lines

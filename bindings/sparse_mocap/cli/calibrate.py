@@ -14,7 +14,7 @@ from ..calibration import Calibration, Steps, assign_by_shaking, calibrate
 from ..calibration_file import write_calibration
 from ..take import Take
 from .console import print_table, warn
-from .options import FilePath, Sites, Span, check_ending, place_option
+from .options import FilePath, Sites, Span, check_ending, position_along_bone_option
 
 
 class Movement(click.ParamType):  # type: ignore[type-arg]
@@ -74,7 +74,7 @@ class Shake(click.ParamType):  # type: ignore[type-arg]
     "--height", type=click.FloatRange(0.5, 2.5), default=1.75, show_default=True,
     help="The wearer's, in metres.",
 )  # fmt: skip
-@place_option
+@position_along_bone_option
 def calibrate_command(
     take: Path,
     output: Path,
@@ -86,9 +86,9 @@ def calibrate_command(
     sites: tuple[str, ...] | None,
     shakes: tuple[tuple[str, tuple[float, float]], ...],
     height: float,
-    places: tuple[tuple[str, float], ...],
+    positions_along_bone: tuple[tuple[str, float], ...],
 ) -> None:
-    """Finds how sensors are scaled, turned and placed.
+    """Finds how sensors are scaled, turned and where along their bones they sit.
 
     The wearer stands still, bends both elbows about five times with the upper arms at the sides and
     the thumbs forward, and squats about five times; or makes other guided movements (--move).
@@ -99,7 +99,11 @@ def calibrate_command(
     named = [("bend_elbows", arms), ("squat", legs)]
     steps = Steps(stand, (*((name, span) for name, span in named if span), *moves), pose)
     found = calibrate(
-        recorded, steps, sites=_worn(recorded, sites, shakes), height_m=height, places=dict(places)
+        recorded,
+        steps,
+        sites=_worn(recorded, sites, shakes),
+        height_m=height,
+        positions=dict(positions_along_bone),
     )
     write_calibration(output, found)
     warn(found.notes)
@@ -121,7 +125,7 @@ def _worn(
 
 
 def _tell(output: Path, found: Calibration) -> None:
-    table = Table("sensor", "site", "at rest", "scale", "mounting", "place", "quality")
+    table = Table("sensor", "site", "at rest", "scale", "mounting", "along the bone", "quality")
     for name, sensor in found.sensors.items():
         table.add_row(
             name,
@@ -129,7 +133,8 @@ def _tell(output: Path, found: Calibration) -> None:
             f"{sensor.gravity:.3f}",
             f"{sensor.scale:.4f}",
             f"axis {sensor.axis_ratio:.1f} to 1" if sensor.is_mounting_determined else "assumed",
-            f"{sensor.place:.2f}" + ("" if sensor.is_place_determined else " assumed"),
+            f"{sensor.position_along_bone:.2f}"
+            + ("" if sensor.is_position_determined else " assumed"),
             f"{sensor.quality:.2f}",
         )
     print_table(table)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
 from math import isfinite
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Any
 import click
 
 from .. import method_names, noise_presets, preset_names, site_names
+from .console import warn
 
 PAPER_SITES = "left_wrist,right_wrist,left_ankle,right_ankle"
 
@@ -40,26 +42,26 @@ class Sites(click.ParamType):  # type: ignore[type-arg]
         return sites
 
 
-class Place(click.ParamType):  # type: ignore[type-arg]
-    """A site and where on its bone the sensor sits."""
+class PositionAlongBone(click.ParamType):  # type: ignore[type-arg]
+    """A site and where along its bone the sensor sits."""
 
-    name = "SITE=PLACE"
+    name = "SITE=X"
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[str, float]:
-        """Returns the site and its place."""
+        """Returns the site and the position."""
         if isinstance(value, tuple):
             return value
         site, _, text = str(value).partition("=")
         (site,) = Sites().convert(site, param, ctx)
         try:
-            place = float(text)
+            position = float(text)
         except ValueError:
-            place = -1.0
-        if not 0.0 <= place <= 1.0:
-            self.fail(f"{text!r} is no place from 0 (nearer the body) to 1", param, ctx)
-        return site, place
+            position = -1.0
+        if not 0.0 <= position <= 1.0:
+            self.fail(f"{text!r} is not a number from 0 (nearer the body) to 1", param, ctx)
+        return site, position
 
 
 class Span(click.ParamType):  # type: ignore[type-arg]
@@ -83,11 +85,34 @@ class Span(click.ParamType):  # type: ignore[type-arg]
         return begin_s, end_s
 
 
-place_option: Decorator = click.option(
-    "--place", "places", type=Place(), multiple=True,
-    help="Where along its bone a sensor sits, from 0 (elbow, knee) to 1 (wrist, ankle; the"
-    " default), as in left_ankle=0.4. May be repeated.",
-)  # fmt: skip
+def _position_option(name: str) -> Decorator:
+    """Gives a command the parameter ``name``: sites and positions along their bones.
+
+    --place is what scripts of version 0.1 call it.
+    """
+
+    def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
+        @functools.wraps(command)
+        def with_old_name(*args: Any, place: tuple[tuple[str, float], ...], **more: Any) -> Any:
+            if place:
+                said = " ".join(f"--position-along-bone {site}={x:g}" for site, x in place)
+                warn([f"--place is now called --position-along-bone: write {said}"])
+                more[name] = (*more[name], *place)
+            return command(*args, **more)
+
+        option = click.option(
+            "--position-along-bone", name, type=PositionAlongBone(), multiple=True,
+            help="Where along its bone a sensor sits, from 0 (elbow, knee) to 1 (wrist, ankle; the"
+            " default): left_ankle=0.4 is nearer the knee. May be repeated.",
+        )  # fmt: skip
+        old = click.option("--place", type=PositionAlongBone(), multiple=True, hidden=True)
+        return option(old(with_old_name))
+
+    return decorate
+
+
+position_along_bone_option: Decorator = _position_option("positions_along_bone")
+place_option: Decorator = _position_option("places")
 
 frame_option: Decorator = click.option(
     "--frame", type=click.Choice(["heading", "root", "world"]), default="heading",
@@ -111,13 +136,20 @@ method_option: Decorator = click.option(
 )  # fmt: skip
 
 
-def places_of(sites: Sequence[str], places: Sequence[tuple[str, float]]) -> list[float] | None:
-    """Returns a place for each site, None when none is named. Raises BadParameter."""
-    named = dict(places)
+def positions_along_bone_of(
+    sites: Sequence[str], positions: Sequence[tuple[str, float]]
+) -> list[float] | None:
+    """Returns a position for each site, None when none is named. Raises BadParameter."""
+    named = dict(positions)
     for site in named:
         if site not in sites:
-            raise click.BadParameter(f"no sensor is at {site}", param_hint="'--place'")
+            raise click.BadParameter(
+                f"no sensor is at {site}", param_hint="'--position-along-bone'"
+            )
     return [named.get(site, 1.0) for site in sites] if named else None
+
+
+places_of = positions_along_bone_of
 
 
 def check_presets(method: str, presets: Sequence[str]) -> None:

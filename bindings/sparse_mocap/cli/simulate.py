@@ -16,8 +16,8 @@ from .options import (
     Sites,
     check_ending,
     noise_option,
-    place_option,
-    places_of,
+    position_along_bone_option,
+    positions_along_bone_of,
     seed_option,
 )
 
@@ -34,7 +34,11 @@ from .options import (
 )  # fmt: skip
 @noise_option
 @seed_option
-@place_option
+@position_along_bone_option
+@click.option(
+    "--with-positions", is_flag=True,
+    help="Also writes where each sensor is (px,py,pz), as tracked sensors tell.",
+)  # fmt: skip
 def simulate(
     clip: Path,
     output: Path,
@@ -42,7 +46,8 @@ def simulate(
     rate: float,
     noise: str,
     seed: int,
-    places: tuple[tuple[str, float], ...],
+    positions_along_bone: tuple[tuple[str, float], ...],
+    with_positions: bool,
 ) -> None:
     """Turns a motion file into a take.
 
@@ -51,7 +56,8 @@ def simulate(
     check_ending(output, ".csv")
     motion, warnings = read_motion(clip)
     performed, more = to_standard(motion)
-    ideal = simulated(performed, sites, rate, places_of(sites, places))
+    along = positions_along_bone_of(sites, positions_along_bone)
+    ideal = simulated(performed, sites, rate, along, with_position=with_positions)
     origin = f"simulated from {clip.name} at {rate:g} Hz, noise {noise}, seed {seed}"
     write_take(output, Take(noisy(ideal, noise_presets()[noise], seed).sensors, (origin,)))
     warn(warnings + more)

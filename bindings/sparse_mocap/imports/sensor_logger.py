@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..rotations import from_z_up, normalised
+from ..rotations import interpolated as interpolated_rotations
 from ..take import SensorRecord
-from .rotations import STANDARD_GRAVITY_MPS2, from_z_up
+from .gravity import STANDARD_GRAVITY_MPS2
 from .tables import (
     Floats,
     RecordingError,
@@ -14,8 +16,6 @@ from .tables import (
     Text,
     check_finite,
     interpolated,
-    interpolated_orientation,
-    normalised,
     read_table,
 )
 
@@ -50,7 +50,7 @@ def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
     if "orientation" in tables and tables["orientation"].has("qw", "qx", "qy", "qz"):
         table = tables["orientation"]
         values = from_z_up(normalised(table.columns("qw", "qx", "qy", "qz")))
-        orientation = interpolated_orientation(times_s, table.column(_TIME), values)
+        orientation = interpolated_rotations(times_s, table.column(_TIME), values)
     return {"phone": SensorRecord(times_s, force, turn, orientation)}
 
 

@@ -132,18 +132,6 @@ def interpolated(wanted_s: Floats, times_s: Floats, values: Floats) -> Floats:
     return np.column_stack([np.interp(wanted_s, times_s, column) for column in values.T])
 
 
-def interpolated_orientation(wanted_s: Floats, times_s: Floats, orientation: Floats) -> Floats:
-    """Returns unit quaternions (T, 4) at other times."""
-    flips = np.sum(orientation[1:] * orientation[:-1], axis=1) < 0
-    signs = np.cumprod(np.concatenate([[1.0], np.where(flips, -1.0, 1.0)]))
-    return normalised(interpolated(wanted_s, times_s, orientation * signs[:, None]))
-
-
-def normalised(orientation: Floats) -> Floats:
-    """Returns the quaternions (T, 4) with length 1."""
-    return np.asarray(orientation / np.linalg.norm(orientation, axis=1, keepdims=True))
-
-
 def shown(line: str) -> str:
     """Returns a line as error messages show it."""
     return repr(line.strip()[:60])

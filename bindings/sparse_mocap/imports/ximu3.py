@@ -9,9 +9,10 @@ from pathlib import PurePath
 
 import numpy as np
 
+from ..rotations import from_z_up, interpolated, normalised
 from ..take import SensorRecord
-from .rotations import STANDARD_GRAVITY_MPS2, from_z_up
-from .tables import Text, check_finite, find_line, interpolated_orientation, normalised, read_table
+from .gravity import STANDARD_GRAVITY_MPS2
+from .tables import Text, check_finite, find_line, read_table
 
 NAME = "x-IMU3 log folder"
 
@@ -48,7 +49,7 @@ def _record(text: Text, at: int, beside: dict[str, Text]) -> SensorRecord:
     if "quaternion.csv" in beside:
         turns = read_table(beside["quaternion.csv"], 0, ",")
         values = from_z_up(normalised(turns.columns("W", "X", "Y", "Z")))
-        orientation = interpolated_orientation(times_s, turns.column(_TIME) * 1e-6, values)
+        orientation = interpolated(times_s, turns.column(_TIME) * 1e-6, values)
     turn = np.radians(table.columns(*_TURN))[keep] if table.has(*_TURN) else None
     return SensorRecord(times_s, force[keep], turn, orientation)
 

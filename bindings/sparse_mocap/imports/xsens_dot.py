@@ -7,8 +7,9 @@ import re
 
 import numpy as np
 
+from ..rotations import from_z_up, normalised
 from ..take import SensorRecord
-from .rotations import from_z_up, with_gravity
+from .gravity import with_gravity
 from .tables import (
     Floats,
     RecordingError,
@@ -16,7 +17,6 @@ from .tables import (
     Text,
     check_finite,
     find_line,
-    normalised,
     read_table,
     unwrapped,
 )

@@ -7,8 +7,9 @@ import re
 
 import numpy as np
 
+from ..rotations import from_z_up, normalised, rotations_from_matrices
 from ..take import SensorRecord
-from .rotations import from_matrices, from_z_up, with_gravity
+from .gravity import with_gravity
 from .tables import (
     Floats,
     RecordingError,
@@ -16,7 +17,6 @@ from .tables import (
     Text,
     check_finite,
     find_line,
-    normalised,
     read_table,
     unwrapped,
 )
@@ -80,7 +80,7 @@ def _rotation(table: Table) -> Floats | None:
         return None
     columns = table.columns(*_MATRIX)
     check_finite(table, columns, _MATRIX)
-    return from_matrices(columns.reshape(-1, 3, 3).transpose(0, 2, 1))
+    return np.asarray(rotations_from_matrices(columns.reshape(-1, 3, 3).transpose(0, 2, 1)))
 
 
 def _rate_hz(text: Text) -> float:

@@ -7,15 +7,12 @@
 #include <utility>
 
 #include "sparse_mocap/readings/arrival_times.hpp"
+#include "sparse_mocap/readings/channel_names.hpp"
 
 namespace sparse_mocap {
 namespace {
 
 constexpr double kSlack = 1e-6;  // of a reading's interval, so that rounding loses no last reading
-
-constexpr Channel kAllChannels[] = {Channel::specific_force, Channel::angular_velocity,
-                                    Channel::gravity_direction, Channel::orientation,
-                                    Channel::position};
 
 std::span<const double> numbers(const auto& vector) {
   return {vector.data(), static_cast<std::size_t>(vector.size())};
@@ -89,7 +86,7 @@ ReadingStream::ReadingStream(std::vector<SensorInput> sensors, const ReadingSett
 ReadingStream::SensorState ReadingStream::state_of(const SensorInput& input) {
   SensorState state;
   state.correction = input.correction;
-  for (const Channel channel : kAllChannels) {
+  for (const Channel channel : all_channels()) {
     const auto kind =
         channel == Channel::orientation ? Resampler::Kind::rotation : Resampler::Kind::vector;
     if (input.sensor.channels.has(channel)) state.channels.push_back({channel, Resampler(kind)});

@@ -106,9 +106,12 @@ std::vector<VirtualReadings> virtual_readings(const Motion& standard_motion,
     readings.specific_force_end =
         specific_force_along(low_passed(path.end, times_s), path.R_world_sensor, dt);
     readings.angular_velocity = angular_velocity_along(path.R_world_sensor, dt);
-    readings.up.resize(3, standard_motion.num_frames());
+    readings.gravity_direction.resize(3, standard_motion.num_frames());
     for (int t = 0; t < standard_motion.num_frames(); ++t)
-      readings.up.col(t) = path.R_world_sensor[static_cast<std::size_t>(t)].transpose() * kUp;
+      readings.gravity_direction.col(t) =
+          path.R_world_sensor[static_cast<std::size_t>(t)].transpose() * kUp;
+    readings.position_pivot = std::move(path.pivot);
+    readings.position_end = std::move(path.end);
     readings.R_world_sensor = std::move(path.R_world_sensor);
     out.push_back(std::move(readings));
   }

@@ -10,7 +10,8 @@
 
 namespace sparse_mocap {
 
-// What a sensor at one site would read; 3 x frames each, in the sensor's axes.
+// What a sensor at one site would read; 3 x frames each, in the sensor's axes
+// unless said otherwise.
 //
 // A rigid bone makes the specific force linear in the position along it, so the two ends determine
 // every position between them.
@@ -18,13 +19,18 @@ struct VirtualReadings {
   Eigen::Matrix3Xd specific_force_pivot;  // m/s^2, at the carrier's pivot (elbow, knee)
   Eigen::Matrix3Xd specific_force_end;    // m/s^2, at the carrier's end (wrist, ankle)
   Eigen::Matrix3Xd angular_velocity;      // rad/s
-  Eigen::Matrix3Xd up;                    // unit, the direction against gravity
+  Eigen::Matrix3Xd gravity_direction;     // unit, against gravity (up)
+  Eigen::Matrix3Xd position_pivot, position_end;  // m, world
   std::vector<Mat3> R_world_sensor;
 
   // m/s^2 at a position along the carrier, 0 at its pivot, 1 at its end.
   Eigen::Matrix3Xd specific_force(double position_along_bone) const {
     return (1.0 - position_along_bone) * specific_force_pivot +
            position_along_bone * specific_force_end;
+  }
+  // m, world.
+  Eigen::Matrix3Xd position(double position_along_bone) const {
+    return (1.0 - position_along_bone) * position_pivot + position_along_bone * position_end;
   }
 };
 

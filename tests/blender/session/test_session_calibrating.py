@@ -66,7 +66,10 @@ def test_what_was_planted_is_found_and_kept(performance, session, tmp_path):
         assert np.degrees(np.arccos(min((np.trace(off) - 1) / 2, 1.0))) < 5.0, site
         assert sensors_found[site].scale == pytest.approx(1.03, rel=0.01)
     kept = read_calibration(result.path)
-    assert kept.sensors["left_ankle"].place == sensors_found["left_ankle"].place
+    assert (
+        kept.sensors["left_ankle"].position_along_bone
+        == sensors_found["left_ankle"].position_along_bone
+    )
     assert Path(result.path).parent == tmp_path / "takes"
     assert calibrating.calibration_at(result.path).sensors.keys() == kept.sensors.keys()
     fractions = [fraction for fraction, _ in told]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/sensors/inclination.hpp"
+#include "sparse_mocap/readings/gravity_direction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,6 +43,14 @@ Moved moved(double seconds, double shaken_mps2, const Vec3& bias = Vec3::Zero())
   return out;
 }
 
+Eigen::Matrix3Xd causal(const SensorRecording& recording) {
+  return gravity_directions(recording, GravityAverage::causal);
+}
+
+Eigen::Matrix3Xd both_ways(const SensorRecording& recording) {
+  return gravity_directions(recording, GravityAverage::whole_take);
+}
+
 double degrees_between(const Vec3& a, const Vec3& b) {
   return std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * 180.0 / 3.14159265358979323846;
 }
@@ -54,54 +62,54 @@ double worst_degrees(const Eigen::Matrix3Xd& found, const Eigen::Matrix3Xd& want
   return worst;
 }
 
-TEST(Inclination, IsExactWhereNothingAccelerates) {
+TEST(GravityDirection, IsExactWhereNothingAccelerates) {
   const Moved sensor = moved(10.0, 0.0);
-  const auto online = inclinations_online(sensor.recording);
-  EXPECT_LT(worst_degrees(online, sensor.up, InclinationFilter::kUnsure_s + 0.02), 0.1);
-  EXPECT_LT(worst_degrees(inclinations_offline(sensor.recording), sensor.up, 0.0), 0.1);
+  const auto online = causal(sensor.recording);
+  EXPECT_LT(worst_degrees(online, sensor.up, GravityDirectionFilter::kUnsure_s + 0.02), 0.1);
+  EXPECT_LT(worst_degrees(both_ways(sensor.recording), sensor.up, 0.0), 0.1);
 }
 
-TEST(Inclination, SeesThroughShaking) {
+TEST(GravityDirection, SeesThroughShaking) {
   // The accelerometer alone is off by up to atan(5 / 9.81) = 27 degrees.
   const Moved sensor = moved(20.0, 5.0);
-  EXPECT_LT(worst_degrees(inclinations_online(sensor.recording), sensor.up, 3.0), 4.0);
-  EXPECT_LT(worst_degrees(inclinations_offline(sensor.recording), sensor.up, 0.0), 4.0);
+  EXPECT_LT(worst_degrees(causal(sensor.recording), sensor.up, 3.0), 4.0);
+  EXPECT_LT(worst_degrees(both_ways(sensor.recording), sensor.up, 0.0), 4.0);
 }
 
-TEST(Inclination, LeansByABiasOnlyAsFarAsItTurnsWithinTheAverage) {
+TEST(GravityDirection, LeansByABiasOnlyAsFarAsItTurnsWithinTheAverage) {
   const double bias = 0.01;
   const Moved sensor = moved(60.0, 0.0, Vec3(bias, 0.0, 0.0));
-  const double limit = 57.3 * bias * InclinationFilter::kTimeConstant_s;
-  EXPECT_LT(worst_degrees(inclinations_online(sensor.recording), sensor.up, 0.6), 1.1 * limit);
+  const double limit = 57.3 * bias * GravityDirectionFilter::kTimeConstant_s;
+  EXPECT_LT(worst_degrees(causal(sensor.recording), sensor.up, 0.6), 1.1 * limit);
 }
 
-TEST(Inclination, IsUnsureAtABeginningAndAfterAGap) {
+TEST(GravityDirection, IsUnsureAtABeginningAndAfterAGap) {
   Moved sensor = moved(10.0, 1.0);
   for (std::size_t t = 400; t < 1000; ++t) sensor.recording.times_s[t] += 1.0;
-  const auto found = inclinations_online(sensor.recording);
+  const auto found = causal(sensor.recording);
   for (const Eigen::Index begin : {0, 400})
     for (Eigen::Index t = begin; t < begin + 100; ++t)
       EXPECT_EQ(found.col(t).allFinite(), t >= begin + 50) << t;
-  EXPECT_TRUE(inclinations_offline(sensor.recording).allFinite());
+  EXPECT_TRUE(both_ways(sensor.recording).allFinite());
 }
 
-TEST(Inclination, KnowsNothingWithoutAGyroscope) {
+TEST(GravityDirection, KnowsNothingWithoutAGyroscope) {
   Moved sensor = moved(5.0, 1.0);
   sensor.recording.angular_velocity.setZero();  // as devices without one may send
-  EXPECT_TRUE(inclinations_online(sensor.recording).array().isNaN().all());
-  EXPECT_TRUE(inclinations_offline(sensor.recording).array().isNaN().all());
+  EXPECT_TRUE(causal(sensor.recording).array().isNaN().all());
+  EXPECT_TRUE(both_ways(sensor.recording).array().isNaN().all());
   sensor.recording.angular_velocity.resize(3, 0);
-  EXPECT_TRUE(inclinations_online(sensor.recording).array().isNaN().all());
-  EXPECT_TRUE(inclinations_offline(sensor.recording).array().isNaN().all());
+  EXPECT_TRUE(causal(sensor.recording).array().isNaN().all());
+  EXPECT_TRUE(both_ways(sensor.recording).array().isNaN().all());
 }
 
-TEST(Inclination, PassesOverSamplesThatAreNone) {
+TEST(GravityDirection, PassesOverSamplesThatAreNone) {
   Moved sensor = moved(10.0, 0.0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Eigen::Index t : {300, 301, 302, 500})
     sensor.recording.specific_force.col(t).x() = nan;
   for (const auto& found :
-       {inclinations_online(sensor.recording), inclinations_offline(sensor.recording)}) {
+       {causal(sensor.recording), both_ways(sensor.recording)}) {
     EXPECT_FALSE(found.col(301).allFinite());
     EXPECT_LT(degrees_between(found.col(303), sensor.up.col(303)), 0.2);
     EXPECT_LT(degrees_between(found.col(900), sensor.up.col(900)), 0.2);

@@ -88,7 +88,7 @@ TEST(VirtualReadings, AtRestAreGravityOnTheAxesOfTheMounting) {
     for (int t = 0; t < 30; ++t) {
       for (const double place : {0.0, 0.3, 1.0})
         EXPECT_LT((readings.specific_force(place).col(t) - wanted).norm(), 1e-6) << site;
-      EXPECT_LT((readings.up.col(t) * 9.81 - wanted).norm(), 1e-9);
+      EXPECT_LT((readings.gravity_direction.col(t) * 9.81 - wanted).norm(), 1e-9);
       EXPECT_LT(readings.angular_velocity.col(t).norm(), 1e-12);
     }
   };
@@ -120,7 +120,7 @@ TEST(VirtualReadings, OfAPendulumAreItsClosedForm) {
     const Vec3 found = readings.specific_force_end.col(t) - 9.81 * up;
     errors += (found - own).squaredNorm();
     squares += own.squaredNorm();
-    EXPECT_LT((readings.up.col(t) - up).norm(), 1e-9);
+    EXPECT_LT((readings.gravity_direction.col(t) - up).norm(), 1e-9);
     EXPECT_NEAR(readings.angular_velocity(1, t), speed, 0.02 * amplitude * w);
     EXPECT_LT((readings.specific_force_pivot.col(t) - 9.81 * up).norm(), 1e-6);
   }
@@ -132,7 +132,7 @@ TEST(VirtualReadings, OnAWheelPullInwardsByRadiusTimesSpeedSquared) {
   const Motion motion = swinging_shin([&](double s) { return w * s; }, rate_hz, 240);
   const VirtualReadings readings = readings_at(motion, "left_ankle");
   for (const double place : {0.25, 0.5, 1.0}) {
-    const Eigen::Matrix3Xd own = readings.specific_force(place) - 9.81 * readings.up;
+    const Eigen::Matrix3Xd own = readings.specific_force(place) - 9.81 * readings.gravity_direction;
     for (int t = 3; t < 237; ++t) {
       EXPECT_NEAR(own(0, t), -place * kShin_m * w * w, 0.02 * place * kShin_m * w * w);
       EXPECT_LT(own.col(t).tail<2>().norm(), 0.02 * place * kShin_m * w * w);
@@ -185,7 +185,7 @@ TEST(VirtualReadings, OfAMirroredMotionChangeSidesAndNegateY) {
     };
     expect(here.specific_force_pivot, there.specific_force_pivot, polar);
     expect(here.specific_force_end, there.specific_force_end, polar);
-    expect(here.up, there.up, polar);
+    expect(here.gravity_direction, there.gravity_direction, polar);
     expect(here.angular_velocity, there.angular_velocity, axial);
   }
 }
@@ -209,7 +209,7 @@ TEST(VirtualReadings, OfOneOrTwoFramesAreGravityAlone) {
   for (const int frames : {1, 2}) {
     const Motion motion = swaying_motion(template_skeleton(), 4, frames, 120.0);
     const auto readings = readings_at(motion, "left_wrist");
-    EXPECT_LT((readings.specific_force_end - 9.81 * readings.up).norm(), 1e-9);
+    EXPECT_LT((readings.specific_force_end - 9.81 * readings.gravity_direction).norm(), 1e-9);
   }
 }
 

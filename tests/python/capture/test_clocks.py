@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from sparse_mocap.capture.clocks import evened, host_times
+from sparse_mocap import host_times, spread_evenly
 
 
 def arrivals(taken_s: np.ndarray, seed: int, burst: int = 1) -> np.ndarray:
@@ -44,15 +44,15 @@ def test_a_clock_that_is_not_in_real_time_keeps_its_own_seconds() -> None:
 
 def test_without_a_clock_what_arrived_at_once_is_spread() -> None:
     arrival_s = np.repeat([1.0, 1.04, 1.08, 1.12], 4)
-    assert np.diff(evened(arrival_s)) == pytest.approx(0.01)
-    assert evened(arrival_s)[-1] == pytest.approx(1.12)
+    assert np.diff(spread_evenly(arrival_s)) == pytest.approx(0.01)
+    assert spread_evenly(arrival_s)[-1] == pytest.approx(1.12)
     times, _ = host_times(np.full(16, np.nan), arrival_s)
-    assert times == pytest.approx(evened(arrival_s))
+    assert times == pytest.approx(spread_evenly(arrival_s))
 
 
 def test_without_a_clock_a_pause_stays_a_pause() -> None:
     arrival_s = np.concatenate([np.arange(100) / 100.0, 5.0 + np.arange(100) / 100.0])
-    assert evened(arrival_s) == pytest.approx(arrival_s)
+    assert spread_evenly(arrival_s) == pytest.approx(arrival_s)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
