@@ -16,6 +16,7 @@ namespace sparse_mocap::python {
 // One function a file, each binds one concept.
 void bind_errors(py::module_& m);
 void bind_motion(py::module_& m);
+void bind_body(py::module_& m);
 void bind_humanoid(py::module_& m);
 void bind_sensors(py::module_& m);
 void bind_streams(py::module_& m);
@@ -23,6 +24,7 @@ void bind_calibration(py::module_& m);
 void bind_timing(py::module_& m);
 void bind_rotations(py::module_& m);
 void bind_readings(py::module_& m);
+void bind_model(py::module_& m);
 void bind_database(py::module_& m);
 void bind_database_import(py::module_& m);
 void bind_baselines(py::module_& m);

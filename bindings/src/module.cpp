@@ -9,6 +9,7 @@ PYBIND11_MODULE(_core, m) {
   m.attr("GRAVITY_MPS2") = kGravity_mps2;
   python::bind_errors(m);
   python::bind_motion(m);
+  python::bind_body(m);
   python::bind_humanoid(m);
   python::bind_sensors(m);
   python::bind_streams(m);
@@ -16,6 +17,7 @@ PYBIND11_MODULE(_core, m) {
   python::bind_timing(m);
   python::bind_rotations(m);
   python::bind_readings(m);
+  python::bind_model(m);
   python::bind_database(m);
   python::bind_database_import(m);
   python::bind_reconstruction(m);

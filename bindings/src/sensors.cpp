@@ -40,10 +40,13 @@ py::dict simulate(const Motion& motion, const std::vector<std::string>& site_nam
                   const std::optional<std::vector<double>>& positions_along_bone) {
   if (!(rate_hz > 0.0)) throw py::value_error("rate_hz must be positive");
   if (motion.num_frames() < 3) throw py::value_error("the motion has fewer than 3 frames");
-  const auto sensors = sensors_from(site_names, positions_along_bone);
+  if (positions_along_bone && positions_along_bone->size() != site_names.size())
+    throw py::value_error("positions_along_bone must have one entry a site");
+  const auto positions =
+      positions_along_bone.value_or(std::vector<double>(site_names.size(), 1.0));
   std::vector<Site> sites;
-  for (const auto& sensor : sensors)
-    sites.push_back(all_sites()[static_cast<std::size_t>(sensor.site)]);
+  for (const auto& name : site_names)
+    sites.push_back(all_sites()[static_cast<std::size_t>(find_site(name))]);
   std::vector<VirtualReadings> readings;
   {
     const py::gil_scoped_release release;
@@ -58,9 +61,9 @@ py::dict simulate(const Motion& motion, const std::vector<std::string>& site_nam
        orientation = new_array({s, n, 4});
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const auto at = static_cast<py::ssize_t>(i);
-    const Eigen::MatrixXd f = sampled(readings[i].specific_force(sensors[i].place), motion, times);
+    const Eigen::MatrixXd f = sampled(readings[i].specific_force(positions[i]), motion, times);
     const Eigen::MatrixXd w = sampled(readings[i].angular_velocity, motion, times);
-    const Eigen::MatrixXd p = sampled(readings[i].position(sensors[i].place), motion, times);
+    const Eigen::MatrixXd p = sampled(readings[i].position(positions[i]), motion, times);
     std::copy(f.data(), f.data() + f.size(), force.mutable_data(at, 0, 0));
     std::copy(w.data(), w.data() + w.size(), turn.mutable_data(at, 0, 0));
     std::copy(p.data(), p.data() + p.size(), position.mutable_data(at, 0, 0));

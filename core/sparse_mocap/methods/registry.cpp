@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/database/model.hpp"
 #include "sparse_mocap/path_regression/method.hpp"
+#include "sparse_mocap/readings/channel_names.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 #include "sparse_mocap/tautges2011/method.hpp"
 

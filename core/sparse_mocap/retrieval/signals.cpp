@@ -56,7 +56,7 @@ FeatureRows database_signals(const MotionDatabase& database, std::span<const Sig
     const Eigen::Index column = site_column(database, signals[s].site);
     auto signal = rows.middleCols(static_cast<Eigen::Index>(3 * s), 3);
     if (signals[s].channel == Channel::gravity_direction) {
-      signal = database.up().middleCols(column, 3);
+      signal = database.gravity_direction().middleCols(column, 3);
       continue;
     }
     const auto along = static_cast<float>(signals[s].position_along_bone);

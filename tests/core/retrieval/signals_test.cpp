@@ -72,7 +72,7 @@ TEST(DatabaseSignals, AreThoseOfTheSensorsInTheirOrderAndPosition) {
                   0.75F * database->specific_force_pivot()(n, column) +
                       0.25F * database->specific_force_end()(n, column),
                   1e-5F);
-      EXPECT_EQ(rows(n, 6 + k), database->up()(n, column));
+      EXPECT_EQ(rows(n, 6 + k), database->gravity_direction()(n, column));
     }
   }
 }

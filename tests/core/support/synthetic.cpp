@@ -100,7 +100,7 @@ std::vector<Reading> readings_of(const MotionDatabase& database, int clip,
       if (channels.has(Channel::angular_velocity))
         reading.angular_velocity.col(at) = row(database.angular_velocity());
       if (channels.has(Channel::gravity_direction))
-        reading.gravity_direction.col(at) = row(database.up());
+        reading.gravity_direction.col(at) = row(database.gravity_direction());
     }
     readings.push_back(reading);
   }
