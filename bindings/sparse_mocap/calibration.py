@@ -35,7 +35,6 @@ __all__ = [
     "CalibrationError",
     "SensorCalibration",
     "Steps",
-    "Worn",
     "apply",
     "assign_by_shaking",
     "calibrate",
@@ -43,7 +42,6 @@ __all__ = [
     "positions_along_bone",
     "sensor_inputs",
     "standing_pose_names",
-    "worn_as",
 ]
 
 _CLEARLY = 2.0  # how much more the shaken sensor must move than any other
@@ -111,31 +109,6 @@ class Steps:
     """How the wearer stood, one of standing_pose_names()."""
 
 
-@dataclass(frozen=True)
-class Worn:
-    """How sensors are worn, in an order: what live readings need of a calibration."""
-
-    sites: list[str]
-    places: list[float] | None
-    """Along the sites' bones; None: the sites' own."""
-    R_site_sensor: Floats
-    """(S, 3, 3), applied after the scale."""
-    scales: Floats
-    """(S,)"""
-    gyroscope_biases: Floats
-    """(S, 3) rad/s, in the sensors' own axes."""
-
-    def ideal(self, values: Floats, has_up: Sequence[bool] = ()) -> Floats:
-        """What ideal sensors would have read at the same instant, (C, 3).
-
-        Specific forces of all sensors come first, then directions of those that have_up.
-        """
-        count = len(self.sites)
-        turns = [*self.R_site_sensor, *self.R_site_sensor[np.flatnonzero(has_up)]]
-        scales = np.concatenate([self.scales, np.ones(len(turns) - count)])
-        return np.einsum("c,cij,cj->ci", scales, np.array(turns), values)
-
-
 def calibrate(
     take: Take,
     steps: Steps,
@@ -188,40 +161,26 @@ def positions_along_bone(calibration: Calibration, take: Take) -> list[float]:
     return [_of(calibration, name).position_along_bone for name in take.sensors]
 
 
-places_of = positions_along_bone
-
-
 def sensor_inputs(
-    calibration: Calibration | None, names: Sequence[str], channels: Sequence[Sequence[str]]
+    calibration: Calibration | None,
+    names: Sequence[str],
+    channels: Sequence[Sequence[str]],
+    positions: Mapping[str, float] | None = None,
 ) -> list[SensorInput]:
     """Returns sensors of these names as a ReadingStream takes them, with the channels wanted.
 
     Without a calibration they are worn at the ends of their bones, as the sites they are named by
-    ask for. Raises CalibrationError when a sensor has no calibration.
+    ask for; positions along the bone, by site, win over both. Raises CalibrationError when a
+    sensor has no calibration, and ConfigError for a name that is no site.
     """
     pairs = zip(names, channels, strict=True)
     if calibration is None:
-        return [SensorInput(name, list(wanted)) for name, wanted in pairs]
-    return [_sensor_input(_of(calibration, name), wanted) for name, wanted in pairs]
-
-
-def worn_as(calibration: Calibration | None, names: Sequence[str]) -> Worn:
-    """Returns how sensors of these names are worn; without a calibration, as their sites ask for.
-
-    Raises CalibrationError when a sensor has no calibration.
-    """
-    if calibration is None:
-        count = len(names)
-        turns = np.tile(np.eye(3), (count, 1, 1))
-        return Worn(list(names), None, turns, np.ones(count), np.zeros((count, 3)))
-    known = [_of(calibration, name) for name in names]
-    return Worn(
-        [sensor.site for sensor in known],
-        [sensor.position_along_bone for sensor in known],
-        np.array([sensor.R_site_sensor for sensor in known]),
-        np.array([sensor.scale for sensor in known]),
-        np.array([sensor.gyroscope_bias for sensor in known]),
-    )
+        along = positions or {}
+        return [
+            SensorInput(name, list(wanted), position_along_bone=along.get(name, 1.0))
+            for name, wanted in pairs
+        ]
+    return [_sensor_input(_of(calibration, name), wanted, positions) for name, wanted in pairs]
 
 
 def assign_by_shaking(take: Take, span: Span) -> str:
@@ -297,11 +256,15 @@ def _at_known_position(
     )
 
 
-def _sensor_input(known: SensorCalibration, channels: Sequence[str]) -> SensorInput:
+def _sensor_input(
+    known: SensorCalibration,
+    channels: Sequence[str],
+    positions: Mapping[str, float] | None = None,
+) -> SensorInput:
     return SensorInput(
         known.site,
         list(channels),
-        position_along_bone=known.position_along_bone,
+        position_along_bone=(positions or {}).get(known.site, known.position_along_bone),
         scale=known.scale,
         R_site_sensor=known.R_site_sensor,
         gyroscope_bias=known.gyroscope_bias,

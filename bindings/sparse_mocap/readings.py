@@ -3,21 +3,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from . import MotionDatabase, ReadingStream, Reconstructor, SensorInput, channels_of
-from . import _core as core
+from ._core import Readings, ReadingStream, SensorInput, channels_of
 from .take import SensorRecord, Take
 
 if TYPE_CHECKING:
     from .capture.sample_log import Samples
 
-Floats = NDArray[np.float64]
+
+__all__ = [
+    "ReadingStream",
+    "Readings",
+    "SensorInput",
+    "all_readings",
+    "channels_in",
+    "measured_channels",
+    "push_samples",
+]
 
 
 def channels_in(record: SensorRecord) -> list[str]:
@@ -32,6 +36,12 @@ def channels_in(record: SensorRecord) -> list[str]:
     )
 
 
+def measured_channels(status: Mapping[str, Any]) -> list[str]:
+    """Returns what a live sensor measures, by its entry in the capture's status."""
+    turns = ["angular_velocity", "gravity_direction"] if status["has_gyroscope"] else []
+    return ["specific_force", *turns]
+
+
 def all_readings(
     take: Take,
     sensors: Sequence[SensorInput],
@@ -40,7 +50,7 @@ def all_readings(
     gravity_average: str = "causal",
     tracker_yaw_rad: float = 0.0,
     tracker_origin_m: Sequence[float] = (0.0, 0.0, 0.0),
-) -> core.Readings:
+) -> Readings:
     """Returns the readings of a whole take; sensors are in its order.
 
     gravity_average and tracker_* are as ReadingStream has them.
@@ -81,137 +91,3 @@ def push_samples(stream: ReadingStream, sensors: Sequence[int], samples: Samples
             own["angular_velocity"],
             orientation=own["orientation"],
         )
-
-
-# What follows gives a method that takes specific forces and directions of gravity as rows of one
-# array its rows.
-
-
-@dataclass(frozen=True)
-class Channels:
-    """What the rows of a reading are: all specific forces first."""
-
-    sites: list[str]
-    places: list[float] | None
-    """Positions along the bones; None: at their ends."""
-    has_up: list[bool]
-    """Whether the sensor's direction of gravity is read as well."""
-
-    def reconstructor(
-        self,
-        database: MotionDatabase,
-        *,
-        method: str = "tautges2011",
-        preset: str = "default",
-        excluded_clips: Sequence[int] = (),
-    ) -> Reconstructor:
-        """Returns the method for these channels."""
-        also = np.flatnonzero(self.has_up).tolist()
-        places = self.places
-        return Reconstructor(
-            database,
-            [*self.sites, *(self.sites[index] for index in also)],
-            method=method,
-            preset=preset,
-            places=None if places is None else [*places, *(places[index] for index in also)],
-            quantities=["specific_force"] * len(self.sites) + ["up"] * len(also),
-            excluded_clips=excluded_clips,
-        )
-
-    def inputs(self, gyroscope_biases: Floats | None = None) -> list[SensorInput]:
-        """Returns the sensors as a stream takes them."""
-        channels = [["specific_force"] + ["gravity_direction"] * has_up for has_up in self.has_up]
-        biases = np.zeros((len(channels), 3)) if gyroscope_biases is None else gyroscope_biases
-        return [
-            SensorInput(site, wanted, gyroscope_bias=bias)
-            for site, wanted, bias in zip(self.sites, channels, biases, strict=True)
-        ]
-
-    def rows(self, read: core.Readings) -> Floats:
-        """Returns (T, C, 3): m/s^2, and unit vectors against gravity; NaN in silences."""
-        return np.concatenate(
-            [read.specific_force, read.gravity_direction[:, np.flatnonzero(self.has_up)]], axis=1
-        )
-
-
-@dataclass(frozen=True)
-class Readings:
-    """A take at a database's rate. T times, S sensors, C channels."""
-
-    channels: Channels
-    times_s: Floats
-    """(T,)"""
-    values: Floats
-    """(T, C, 3) m/s^2 and unit vectors; NaN where a sensor is silent."""
-
-    @property
-    def specific_force(self) -> Floats:
-        """(T, S, 3) m/s^2."""
-        return self.values[:, : len(self.channels.sites)]
-
-
-def readings_of(
-    take: Take,
-    rate_hz: float,
-    *,
-    places: list[float] | None = None,
-    offline: bool = False,
-    uses_gyroscopes: bool = True,
-) -> Readings:
-    """Returns a take's readings, through the database's low-pass.
-
-    offline: directions may look at the whole take. uses_gyroscopes: where there are some.
-    """
-    has_up = [
-        uses_gyroscopes and "gravity_direction" in channels_in(record)
-        for record in take.sensors.values()
-    ]
-    channels = Channels(take.sites, places, has_up)
-    average = "whole_take" if offline else "causal"
-    read = all_readings(take, channels.inputs(), rate_hz, gravity_average=average)
-    return Readings(channels, read.times_s, channels.rows(read))
-
-
-@dataclass(frozen=True)
-class LiveReading:
-    """All sensors at one instant."""
-
-    time_s: float
-    """On the machine's monotonic clock."""
-    values: Floats
-    """(C, 3) as Channels.rows has them, in the sensors' own axes."""
-
-
-@dataclass
-class LiveReadings:
-    """A capture's sensors as they come, a reading at a time."""
-
-    sensors: list[int]
-    rate_hz: float
-    has_up: Sequence[bool] = ()
-    gyroscope_biases: Floats | None = None
-    _channels: Channels = field(init=False)
-    _stream: ReadingStream = field(init=False)
-
-    def __post_init__(self) -> None:
-        has_up = [*map(bool, self.has_up)] or [False] * len(self.sensors)
-        self._channels = Channels(["pelvis"] * len(self.sensors), None, has_up)
-        self._stream = ReadingStream(self._channels.inputs(self.gyroscope_biases), self.rate_hz)
-
-    @property
-    def delay_s(self) -> float:
-        """How long after its time a reading can be had, when no sensor is late."""
-        return self._stream.delay_s
-
-    def add(self, samples: Samples) -> None:
-        """Takes samples as the sample log has them."""
-        push_samples(self._stream, self.sensors, samples)
-
-    def ready(self, now_s: float) -> list[LiveReading]:
-        """The readings that can be had by now; now is on the machine's monotonic clock.
-
-        A sensor that is late is waited for a tenth of a second; then the others go on without it.
-        """
-        read = self._stream.ready(now_s)
-        pairs = zip(read.times_s, self._channels.rows(read), strict=True)
-        return [LiveReading(float(time_s), values) for time_s, values in pairs]

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, deque
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import GRAVITY_MPS2, Clip, MotionDatabase, Reconstruction
+from ._core import GRAVITY_MPS2, Clip, MotionDatabase, PoseEstimate, Reconstruction
 from .take import Take
 
 Floats = NDArray[np.float64]
@@ -17,6 +17,7 @@ Floats = NDArray[np.float64]
 __all__ = [
     "LARGEST_FAIR_MISFIT",
     "LARGEST_GOOD_MISFIT",
+    "LiveMatch",
     "is_unlike_the_database",
     "match",
     "mean_misfit_mps2",
@@ -60,6 +61,47 @@ def match(misfit: float) -> str:
     if misfit <= LARGEST_GOOD_MISFIT:
         return "good"
     return "fair" if misfit <= LARGEST_FAIR_MISFIT else "poor"
+
+
+class LiveMatch:
+    """How well sensors match the motion database while they are live."""
+
+    def __init__(self, num_poses: int = 250, num_samples: int = 1000) -> None:
+        """Takes how many poses are averaged, and samples of each sensor."""
+        self._misfits: deque[float] = deque(maxlen=num_poses)
+        self._forces: dict[int, deque[Floats]] = {}
+        self._num_samples = num_samples
+
+    def add_samples(self, sensors: NDArray[np.int_], specific_force: Floats) -> None:
+        """Takes the sensors' numbers (N,) and what they measured, (N, 3) m/s^2."""
+        for number in np.unique(sensors).tolist():
+            measured = specific_force[sensors == number]
+            kept = self._forces.setdefault(number, deque(maxlen=self._num_samples))
+            kept.extend(measured[np.isfinite(measured).all(axis=1)])
+
+    def add_pose(self, estimate: PoseEstimate) -> None:
+        """Takes what the method says of a pose."""
+        misfit = np.asarray(estimate.diagnostics.get("sensor_misfit_mps2", ()))
+        if np.isfinite(misfit).any():
+            self._misfits.append(float(np.nanmean(misfit)))
+
+    @property
+    def misfit_mps2(self) -> float | None:
+        """The mean of the last poses; None before there are any."""
+        return float(np.mean(self._misfits)) if self._misfits else None
+
+    @property
+    def match(self) -> str:
+        """"good", "fair" or "poor"; empty before there are poses."""
+        misfit = self.misfit_mps2
+        if misfit is None:
+            return ""
+        variation = [
+            float(np.linalg.norm(forces - forces.mean(axis=0), axis=1).mean())
+            for forces in map(np.array, self._forces.values())
+            if len(forces)
+        ]
+        return match(misfit / max(float(np.mean(variation or [0.0])), _QUIET_MPS2))
 
 
 def is_unlike_the_database(solved: Reconstruction) -> bool:

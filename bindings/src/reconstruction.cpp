@@ -100,6 +100,10 @@ py::array_t<double> contacts_of(const Reconstruction& solved) {
 }
 
 void bind_values(py::module_& m) {
+  py::class_<SensorRecording>(m, "SensorRecording", "What one sensor measured in a performance.")
+      .def(py::init(&recording_from), py::arg("times_s"), py::arg("specific_force") = py::none(),
+           py::arg("angular_velocity") = py::none(), py::arg("position") = py::none(),
+           py::arg("orientation") = py::none());
   py::class_<BoundEstimate>(m, "PoseEstimate", "One reconstructed frame.")
       .def_property_readonly(
           "time_s", [](const BoundEstimate& b) { return b.estimate.time_s; },

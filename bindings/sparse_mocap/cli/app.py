@@ -13,6 +13,7 @@ import click
 from .faults import Fault, as_faults
 
 _COMMANDS = {
+    "body": ".body:body",
     "calibrate": ".calibrate:calibrate_command",
     "convert": ".convert:convert",
     "database": ".database:database",
@@ -21,10 +22,12 @@ _COMMANDS = {
     "import": ".import_recording:import_recording",
     "inspect": ".inspect:inspect",
     "live": ".live:live",
+    "methods": ".methods:methods",
     "ports": ".ports:ports",
     "reconstruct": ".reconstruct:reconstruct",
     "record": ".record:record",
     "simulate": ".simulate:simulate",
+    "train": ".train:train",
 }
 """A command's name, and the module that has it (loaded only when it is called)."""
 

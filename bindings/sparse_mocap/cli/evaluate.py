@@ -6,8 +6,9 @@ from __future__ import annotations
 import hashlib
 import json
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,18 +16,19 @@ import click
 from rich.table import Table
 
 from .. import MotionDatabase, _core, build_database, mapping_folder
-from ..evaluation import SCENARIOS, Evaluation, Settings, motion_files
-from ..evaluation import evaluate as run_evaluation
-from .console import ProgressCallback, print_table, progress_bar, warn, write_json
-from .options import (
-    PAPER_SITES,
-    FilePath,
-    Sites,
-    check_presets,
-    method_option,
-    noise_option,
-    seed_option,
+from ..evaluation import (
+    SCENARIOS,
+    Contender,
+    Evaluation,
+    Settings,
+    contenders,
+    motion_files,
+    variants,
 )
+from ..evaluation import evaluate as run_evaluation
+from ..methods import DEFAULT_METHOD, Experiment, method_info, methods, renamed_preset
+from .console import ProgressCallback, print_table, progress_bar, warn, write_json
+from .options import PAPER_SITES, FilePath, Sites, noise_option, seed_option, set_option
 
 
 @click.command()
@@ -43,11 +45,18 @@ from .options import (
 )
 @click.option("--json", "json_path", type=FilePath, help="Writes all figures.")
 @click.option("--plots", type=FilePath, help="Writes pictures of the errors into this folder.")
-@method_option
 @click.option(
-    "--preset", "presets", multiple=True, help="May be repeated.  [default: default, paper]"
-)
-@click.option("--offline", is_flag=True, help="Runs each preset offline too.")
+    "--method", "names", type=click.Choice([method.name for method in methods()]), multiple=True,
+    help="May be repeated.  [default: all that need a database alone]",
+)  # fmt: skip
+@click.option("--preset", "presets", multiple=True, help="May be repeated.")
+@set_option
+@click.option(
+    "--experiment", "experiments", multiple=True, metavar="NAME",
+    help="Runs a comparison of the method's paper; `methods NAME` lists them. May be repeated.",
+)  # fmt: skip
+@click.option("--paper", is_flag=True, help="Runs every comparison of the methods' papers.")
+@click.option("--offline", is_flag=True, help="Runs best quality too, where methods have it.")
 @click.option("--gyroscopes", is_flag=True, help="Sensors have gyroscopes, which are used.")
 @click.option("--sites", type=Sites(), default=PAPER_SITES, help="Where sensors are worn.")
 @noise_option
@@ -59,8 +68,11 @@ def evaluate(
     tests: str | None,
     json_path: Path | None,
     plots: Path | None,
-    method: str,
+    names: tuple[str, ...],
     presets: tuple[str, ...],
+    settings: tuple[tuple[str, str], ...],
+    experiments: tuple[str, ...],
+    paper: bool,
     offline: bool,
     gyroscopes: bool,
     sites: tuple[str, ...],
@@ -74,25 +86,86 @@ def evaluate(
     what the scenario excludes are hidden from the database. Errors are the RMS over 21 joints in
     the heading frame, a mean over each clip's frames.
     """
-    presets = presets or tuple(dict.fromkeys(("default", _paper_preset(method))))
-    check_presets(method, presets)
-    settings = Settings(scenario, method, presets, offline, tests, sites, noise, seed, gyroscopes)
+    names, presets = _renamed(names, presets)
+    common = Settings(
+        scenario, tests=tests, sites=sites, noise=noise, seed=seed, with_gyroscopes=gyroscopes
+    )
+    runs: list[tuple[str, Settings]] = []
+    if paper or experiments:
+        for method, experiment in _experiments(names, experiments):
+            chosen = tuple(variants(method, experiment))
+            runs.append(
+                (
+                    f"{method}: {experiment.help}",
+                    replace(common, contenders=chosen, pairs=experiment.pairs),
+                )
+            )
+    else:
+        chosen = _contenders(names, presets, settings, offline)
+        runs.append(("", replace(common, contenders=chosen)))
     with progress_bar("Evaluating") as progress, _database(source, cache, progress) as database:
-        found = run_evaluation(database, source, settings, progress)
-    if json_path is not None:
-        write_json(json_path, found.as_dict())
-    if plots is not None:
-        from ..plots import plot_evaluation
-
-        plot_evaluation(found, plots)
-    warn([f"not tested: {line}" for line in found.left_out])
-    _show(found)
+        found = [(title, run_evaluation(database, source, run, progress)) for title, run in runs]
+    _write(found, json_path, plots)
+    for title, evaluation in found:
+        warn([f"not tested: {line}" for line in evaluation.left_out])
+        _show(title, evaluation)
 
 
-def _paper_preset(method: str) -> str:
-    from .. import preset_names
+def _renamed(
+    names: Sequence[str], presets: Sequence[str]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Returns methods and presets as they are called now, telling of those that are not."""
+    kept = []
+    methods_found = list(names)
+    for preset in presets:
+        method, same, renamed = renamed_preset(names[0] if len(names) == 1 else None, preset)
+        if renamed:
+            warn([renamed])
+            methods_found = [name for name in methods_found if name != "tautges2011"]
+            methods_found.append(method or DEFAULT_METHOD)
+        elif same is not None:
+            kept.append(same)
+            methods_found += [] if names else [DEFAULT_METHOD]
+    return tuple(dict.fromkeys(methods_found)), tuple(kept)
 
-    return "paper" if "paper" in preset_names(method) else "default"
+
+def _contenders(
+    names: Sequence[str],
+    presets: Sequence[str],
+    options: Sequence[tuple[str, str]],
+    offline: bool,
+) -> tuple[Contender, ...]:
+    wanted = names or [method.name for method in methods() if method.needs == ("database",)]
+    known = {preset.name for name in wanted for preset in method_info(name).presets}
+    for preset in presets:
+        if preset not in known:
+            raise click.BadParameter(
+                f"no method here has the preset {preset!r}; there are {', '.join(sorted(known))}",
+                param_hint="'--preset'",
+            )
+    return tuple(
+        contenders(wanted, presets=presets, options=dict(options), with_best_quality=offline)
+    )
+
+
+def _experiments(
+    names: Sequence[str], wanted: Sequence[str]
+) -> list[tuple[str, Experiment]]:
+    """Returns the experiments named, all when none is, with their methods."""
+    known = [
+        (method.name, experiment)
+        for method in methods()
+        if not names or method.name in names
+        for experiment in method.experiments
+    ]
+    there = [experiment.name for _, experiment in known]
+    for name in wanted:
+        if name not in there:
+            raise click.BadParameter(
+                f"no experiment is called {name!r}; there are {', '.join(there) or 'none'}",
+                param_hint="'--experiment'",
+            )
+    return [pair for pair in known if not wanted or pair[1].name in wanted]
 
 
 @contextmanager
@@ -120,11 +193,25 @@ def _fingerprint(source: Path) -> str:
     return hashlib.sha256(json.dumps(seen).encode()).hexdigest()[:12]
 
 
-def _show(found: Evaluation) -> None:
+def _write(
+    found: Sequence[tuple[str, Evaluation]], json_path: Path | None, plots: Path | None
+) -> None:
+    if json_path is not None:
+        told = [{"title": title} | evaluation.as_dict() for title, evaluation in found]
+        write_json(json_path, found[0][1].as_dict() if len(found) == 1 else told)
+    if plots is not None:
+        from ..plots import plot_evaluation
+
+        for index, (_, evaluation) in enumerate(found):
+            plot_evaluation(evaluation, plots if len(found) == 1 else plots / str(index + 1))
+
+
+def _show(title: str, found: Evaluation) -> None:
     settings = found.settings
     click.echo(
-        f"Scenario {found.scenario}: {SCENARIOS[found.scenario]}; {len(found.tests)} clips, "
-        f"{settings['method']}, noise {settings['noise']}. Errors in cm.\n"
+        f"{title + chr(10) if title else ''}Scenario {found.scenario}: "
+        f"{SCENARIOS[found.scenario]}; {len(found.tests)} clips, noise {settings['noise']}. "
+        "Errors in cm.\n"
     )
     print_table(_summary(found))
     classes = {method: found.class_errors_cm(method) for method in found.methods}
@@ -135,15 +222,16 @@ def _show(found: Evaluation) -> None:
 
 
 def _summary(found: Evaluation) -> Table:
-    table = Table("method", box=None, pad_edge=False)
-    for name in ("mean", "median", "90 %", "jerk (km/s³)", "latency (ms)"):
+    table = Table("", box=None, pad_edge=False)
+    for name in ("mean", "median", "90 %", "angle (°)", "jerk (km/s³)", "latency (ms)"):
         table.add_column(name, justify="right")
     for method in found.methods:
         figures: dict[str, Any] = found.summary(method)
-        late = figures["latency_ms"]
+        late, angle = figures["latency_ms"], figures["joint_angle_deg"]
         table.add_row(
             method,
             *(f"{figures[key]:.2f}" for key in ("mean_cm", "median_cm", "p90_cm")),
+            "" if angle is None else f"{angle:.1f}",
             f"{figures['jerk_kmps3']:.3f}",
             "" if late is None else f"{late:.0f}",
         )

@@ -15,7 +15,8 @@ import click
 from rich.console import Console
 from rich.live import Live
 
-from .. import MotionDatabase
+from .. import MotionDatabase, read_model
+from ..body_file import read_body
 from ..calibration_file import read_calibration
 from ..capture.client import CaptureClient, start_capture
 from ..capture.errors import CaptureError
@@ -23,7 +24,16 @@ from .capture_options import capture_options, config_of
 from .console import interrupted, warn
 from .live_session import LiveSession
 from .live_view import view
-from .options import FilePath, check_presets, method_option
+from .options import (
+    FilePath,
+    body_option,
+    method_choice,
+    method_option,
+    model_option,
+    preset_option,
+    set_option,
+)
+from .reconstruct import model_of, require_given
 from .record import FIRST_SAMPLE_TIMEOUT_S, attached
 
 _LOOK_S = 0.01
@@ -33,11 +43,12 @@ _SETTLE_S = 1.0
 
 @click.command()
 @capture_options
-@click.option("--database", "database_path", metavar="DB.smdb", type=FilePath, required=True)
+@click.option("--database", "database_path", metavar="DB.smdb", type=FilePath)
 @method_option
-@click.option(
-    "--preset", default="default", show_default=True, help="The method's settings by name."
-)
+@preset_option
+@set_option
+@model_option
+@body_option
 @click.option(
     "--calibration", "calibration_path", type=FilePath, help="The sensors' calibration (.json)."
 )
@@ -53,9 +64,12 @@ def live(
     baud: int,
     options: dict[str, str],
     sites: tuple[str, ...] | None,
-    database_path: Path,
-    method: str,
-    preset: str,
+    database_path: Path | None,
+    method: str | None,
+    preset: str | None,
+    settings: tuple[tuple[str, str], ...],
+    model_path: Path | None,
+    body_path: Path | None,
     calibration_path: Path | None,
     positions: Path | None,
     seconds: float | None,
@@ -66,8 +80,9 @@ def live(
     For each sensor: rate, loss, last value and state; and how well the motion fits the readings and
     how long it takes from a movement to its pose. Nothing is recorded.
     """
-    check_presets(method, [preset])
-    database = MotionDatabase(database_path)
+    choice = method_choice(method, preset, settings)
+    require_given(choice, database_path, model_path, body_path)
+    database = None if database_path is None else MotionDatabase(database_path)
     calibration = None if calibration_path is None else read_calibration(calibration_path)
     with ExitStack() as stack:
         if attach is not None:
@@ -76,7 +91,15 @@ def live(
             config = config_of(ports, driver, baud, options, sites)
             client = _own_capture(stack, config)
         status = _settled(client, sites)
-        session = LiveSession(client, status, database, method, preset, calibration)
+        session = LiveSession(
+            client,
+            status,
+            database,
+            choice,
+            calibration,
+            model_of(choice, model_path, database),
+            None if body_path is None else read_body(body_path).skeleton,
+        )
         if positions is not None:
             session.stream_to(stack.enter_context(positions.open("w", encoding="utf-8")))
         _watch(stack, client, session, seconds)

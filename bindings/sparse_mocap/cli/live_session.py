@@ -9,89 +9,104 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from .. import MotionDatabase, PoseEstimate, site_names
-from ..calibration import Calibration, worn_as
+from .. import LiveReconstructor, MotionDatabase, PoseEstimate, site_names
+from ..calibration import Calibration, sensor_inputs
 from ..capture.client import CaptureClient
 from ..capture.errors import CaptureError
-from ..capture.live_readings import LiveReadings
 from ..positions import position_header, position_row
-from ..readings import Channels
+from ..readings import measured_channels
+from ..report import LiveMatch
+from .options import MethodChoice
 
-_WINDOW = 250  # poses, for what is shown
+_NUM_POSES = 250  # that figures are averaged over
 
 
 class LiveSession:
-    """Reconstructs what a capture's sensors read, as it comes."""
+    """Reconstructs what a capture's sensors measure, as it comes."""
 
     def __init__(
         self,
         client: CaptureClient,
         status: dict[str, Any],
-        database: MotionDatabase,
-        method: str,
-        preset: str,
+        database: MotionDatabase | None,
+        choice: MethodChoice,
         calibration: Calibration | None = None,
+        model: Any = None,
+        body: Any = None,
     ) -> None:
         self._client = client
-        self._worn = worn_as(calibration, [str(sensor["site"]) for sensor in status["sensors"]])
-        self.sites = self._worn.sites
-        unknown = [site for site in self.sites if site not in site_names()]
-        if unknown:
-            raise CaptureError(f"sensor {unknown[0]!r} has no site; say with --sites where it is")
-        self._has_up = [bool(sensor["has_gyroscope"]) for sensor in status["sensors"]]
-        channels = Channels(self.sites, self._worn.places, self._has_up)
-        self._reconstructor = channels.reconstructor(database, method=method, preset=preset)
-        self._readings = LiveReadings(
-            list(range(len(self.sites))),
-            database.rate_hz,
-            self._has_up,
-            self._worn.gyroscope_biases,
+        names = [str(sensor["site"]) for sensor in status["sensors"]]
+        channels = [measured_channels(sensor) for sensor in status["sensors"]]
+        self.sites = _sites(calibration, names)
+        self._reconstructor = LiveReconstructor(
+            dict(enumerate(names)),
+            channels,
+            database,
+            method=choice.method,
+            preset=choice.preset,
+            options=choice.options,
+            calibration=calibration,
+            model=model,
+            body=body,
         )
-        self._joints = database.skeleton.names
-        self._times: deque[float] = deque(maxlen=self._reconstructor.latency_frames + 1)
         self._file: TextIO | None = None
         self._begin_s: float | None = None
+        self._live_match = LiveMatch(_NUM_POSES)
         self.num_poses = 0
-        self.misfits: deque[float] = deque(maxlen=_WINDOW)
-        self.latencies_s: deque[float] = deque(maxlen=_WINDOW)
-        self.step_s: deque[float] = deque(maxlen=_WINDOW)
+        self.latencies_s: deque[float] = deque(maxlen=_NUM_POSES)
+        self.step_s: deque[float] = deque(maxlen=_NUM_POSES)
 
     def stream_to(self, file: TextIO) -> None:
         """Writes every pose's joint positions, heading frame, to a positions file as it comes."""
         self._file = file
-        file.write(position_header(self._joints) + "\n")
+        file.write(position_header(self._reconstructor.skeleton.names) + "\n")
 
     def advance(self) -> None:
         """Takes what has arrived and makes the poses that are due."""
-        self._readings.add(self._client.read())
-        for reading in self._readings.ready(time.monotonic()):
-            begin = time.perf_counter()
-            self._times.append(reading.time_s)
-            estimate = self._reconstructor.step(self._worn.ideal(reading.values, self._has_up))
-            self.step_s.append(time.perf_counter() - begin)
-            if estimate is not None:
-                self._take_up(self._times[0], estimate)
+        samples = self._client.read()
+        self._reconstructor.push(samples)
+        self._live_match.add_samples(samples["sensor"], samples["specific_force"])
+        begin = time.perf_counter()
+        estimates = self._reconstructor.advance(time.monotonic())
+        for estimate in estimates:
+            self.step_s.append((time.perf_counter() - begin) / len(estimates))
+            self._add_pose(estimate)
         if self._file is not None:
             self._file.flush()
+
+    @property
+    def match(self) -> str:
+        """How well the sensors match the motion database; empty before there are poses."""
+        return self._live_match.match
 
     def summary(self) -> str:
         """One line on the whole session."""
         if not self.num_poses:
-            return "no pose: some sensor never delivered"
+            return "no pose: not every sensor delivered data"
         return (
-            f"{self.num_poses} poses; of the last {len(self.misfits)}: mean misfit "
-            f"{np.nanmean(self.misfits):.2f} m/s^2, from movement to pose "
-            f"{1e3 * np.median(self.latencies_s):.0f} ms (worst "
+            f"{self.num_poses} poses; sensors match the motion database: {self.match}; from "
+            f"movement to pose {1e3 * np.median(self.latencies_s):.0f} ms (worst "
             f"{1e3 * max(self.latencies_s):.0f} ms)"
         )
 
-    def _take_up(self, time_s: float, estimate: PoseEstimate) -> None:
+    def _add_pose(self, estimate: PoseEstimate) -> None:
         self.num_poses += 1
-        misfit = np.asarray(estimate.sensor_misfit_mps2)
-        if np.isfinite(misfit).any():
-            self.misfits.append(float(np.nanmean(misfit)))
-        self.latencies_s.append(time.monotonic() - time_s)
+        self._live_match.add_pose(estimate)
+        self.latencies_s.append(time.monotonic() - estimate.time_s)
         if self._begin_s is None:
-            self._begin_s = time_s
+            self._begin_s = estimate.time_s
         if self._file is not None:
-            self._file.write(position_row(time_s - self._begin_s, estimate.positions) + "\n")
+            row = position_row(estimate.time_s - self._begin_s, estimate.positions)
+            self._file.write(row + "\n")
+
+
+def _sites(calibration: Calibration | None, names: list[str]) -> list[str]:
+    """Returns where sensors of these names are worn. Raises CaptureError for an unknown one."""
+    if calibration is not None:
+        return [sensor.site for sensor in sensor_inputs(calibration, names, [()] * len(names))]
+    for name in names:
+        if name not in site_names():
+            raise CaptureError(
+                f"unknown sensor location {name!r}; say with --sites where the sensor is worn"
+            )
+    return names

@@ -55,10 +55,9 @@ def _sensors(status: dict[str, Any], session: LiveSession) -> Table:
 
 def _fit(session: LiveSession) -> Text:
     if not session.num_poses:
-        return Text("waiting for every sensor")
-    misfit = np.mean(session.misfits) if session.misfits else np.nan
+        return Text("Waiting for data of every sensor")
     return Text(
-        f"{session.num_poses} poses  misfit {misfit:.2f} m/s²  from movement to pose "
-        f"{1e3 * np.median(session.latencies_s):.0f} ms  of this computing "
+        f"{session.num_poses} poses  match {session.match}  from movement to pose "
+        f"{1e3 * np.median(session.latencies_s):.0f} ms, of which computing "
         f"{1e3 * np.median(session.step_s):.1f} ms"
     )

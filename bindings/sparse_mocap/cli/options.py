@@ -5,13 +5,15 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
 import click
 
-from .. import method_names, noise_presets, preset_names, site_names
+from .. import noise_presets, site_names
+from ..methods import DEFAULT_METHOD, MethodInfo, method_info, methods, renamed_preset
 from .console import warn
 
 PAPER_SITES = "left_wrist,right_wrist,left_ankle,right_ankle"
@@ -64,6 +66,23 @@ class PositionAlongBone(click.ParamType):  # type: ignore[type-arg]
         return site, position
 
 
+class Setting(click.ParamType):  # type: ignore[type-arg]
+    """An option of a method and its value."""
+
+    name = "KEY=VALUE"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, str]:
+        """Returns the option's name and its value."""
+        if isinstance(value, tuple):
+            return value
+        name, equals, text = str(value).partition("=")
+        if not (name and equals and text):
+            self.fail(f"{value!r} is not KEY=VALUE, as in num_paths=128", param, ctx)
+        return name.strip(), text.strip()
+
+
 class Span(click.ParamType):  # type: ignore[type-arg]
     """A stretch of a take."""
 
@@ -112,7 +131,6 @@ def _position_option(name: str) -> Decorator:
 
 
 position_along_bone_option: Decorator = _position_option("positions_along_bone")
-place_option: Decorator = _position_option("places")
 
 frame_option: Decorator = click.option(
     "--frame", type=click.Choice(["heading", "root", "world"]), default="heading",
@@ -131,9 +149,60 @@ seed_option: Decorator = click.option(
 )
 
 method_option: Decorator = click.option(
-    "--method", type=click.Choice(method_names()), default="tautges2011", show_default=True,
-    help="The published method that is used.",
+    "--method", type=click.Choice([method.name for method in methods()]),
+    help=f"How motion is reconstructed; `methods` describes them.  [default: {DEFAULT_METHOD}]",
 )  # fmt: skip
+
+set_option: Decorator = click.option(
+    "--set", "settings", type=Setting(), multiple=True, metavar="KEY=VALUE",
+    help="Sets an option of the method; `methods` lists them. May be repeated.",
+)  # fmt: skip
+
+preset_option: Decorator = click.option("--preset", help="The method's settings by name.")
+
+model_option: Decorator = click.option(
+    "--model", "model_path", metavar="M.smmodel", type=FilePath,
+    help="For methods that need a trained model; `train` makes one.",
+)  # fmt: skip
+
+body_option: Decorator = click.option(
+    "--body", "body_path", metavar="BODY.json", type=FilePath,
+    help="The performer's body, as `body` writes it; for methods that need one.",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class MethodChoice:
+    """What a command line says of the method."""
+
+    method: str
+    preset: str | None
+    options: dict[str, str]
+
+    @property
+    def info(self) -> MethodInfo:
+        """The method."""
+        return method_info(self.method)
+
+
+def method_choice(
+    method: str | None, preset: str | None, options: Sequence[tuple[str, str]] = ()
+) -> MethodChoice:
+    """Returns the method wanted, telling of names that are called otherwise now.
+
+    Raises BadParameter for a preset that the method does not have.
+    """
+    method, preset, renamed = renamed_preset(method, preset)
+    if renamed:
+        warn([renamed])
+    info = method_info(method or DEFAULT_METHOD)
+    known = [known.name for known in info.presets]
+    if preset is not None and preset not in known:
+        raise click.BadParameter(
+            f"{info.name} has no preset {preset!r}; it has {', '.join(known)}",
+            param_hint="'--preset'",
+        )
+    return MethodChoice(info.name, preset, dict(options))
 
 
 def positions_along_bone_of(
@@ -147,20 +216,6 @@ def positions_along_bone_of(
                 f"no sensor is at {site}", param_hint="'--position-along-bone'"
             )
     return [named.get(site, 1.0) for site in sites] if named else None
-
-
-places_of = positions_along_bone_of
-
-
-def check_presets(method: str, presets: Sequence[str]) -> None:
-    """Raises BadParameter when the method has no such preset."""
-    known = preset_names(method)
-    for preset in presets:
-        if preset not in known:
-            raise click.BadParameter(
-                f"{preset!r} is no preset of {method}; known are {', '.join(known)}",
-                param_hint="'--preset'",
-            )
 
 
 def check_ending(path: Path, *endings: str) -> str:

@@ -4,61 +4,55 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
-import numpy as np
-from numpy.typing import NDArray
 
-from .. import (
-    MotionDatabase,
-    Reconstruction,
-    read_take,
-    readings_of,
-    write_bvh,
-    write_positions,
-)
+from .. import MotionDatabase, Reconstruction, read_model, read_take, write_bvh, write_positions
 from ..alignment import aligned
-from ..calibration import apply
-from ..calibration import places_of as calibrated_places
+from ..body_file import read_body
 from ..calibration_file import read_calibration
-from ..reconstruction import (
-    is_unlike_the_database,
-    latency_ms,
-    mean_misfit_mps2,
-    report,
-    suspicions,
-)
-from ..take import Take
+from ..reconstruction import reconstruct as reconstruct_take
+from ..report import is_unlike_the_database, match, relative_misfit, report, unit_warnings
 from .console import progress_bar, warn, write_json
 from .options import (
     FilePath,
+    MethodChoice,
     Span,
+    body_option,
     check_ending,
-    check_presets,
     frame_option,
+    method_choice,
     method_option,
-    place_option,
-    places_of,
+    model_option,
+    position_along_bone_option,
+    positions_along_bone_of,
+    preset_option,
+    set_option,
 )
 
 
 @click.command()
 @click.argument("take", metavar="TAKE.csv", type=FilePath)
-@click.option("--database", "database_path", metavar="DB.smdb", type=FilePath, required=True)
+@click.option("--database", "database_path", metavar="DB.smdb", type=FilePath)
 @click.option("-o", "--output", type=FilePath, required=True, help="The motion (.bvh).")
 @method_option
+@preset_option
+@set_option
+@model_option
+@body_option
 @click.option(
-    "--preset", default="default", show_default=True, help="The method's settings by name."
-)
-@click.option("--offline", is_flag=True, help="Looks at the whole take for every frame.")
+    "--offline", is_flag=True,
+    help="Best quality: every frame may look at the whole take. Without it, live quality.",
+)  # fmt: skip
 @click.option(
     "--gyroscopes/--no-gyroscopes", default=True, show_default=True,
-    help="Also uses which way is up for each sensor, where gx,gy,gz tell.",
+    help="Also uses the direction of gravity, where gyroscopes (gx,gy,gz) tell it.",
 )  # fmt: skip
 @click.option("--positions", type=FilePath, help="Also writes the joints' positions (.csv).")
 @frame_option
 @click.option("--json", "json_path", type=FilePath, help="Also writes a report on every frame.")
-@place_option
+@position_along_bone_option
 @click.option(
     "--calibration", "calibration_path", type=FilePath, help="The sensors' calibration (.json)."
 )
@@ -67,75 +61,117 @@ from .options import (
 )
 def reconstruct(
     take: Path,
-    database_path: Path,
+    database_path: Path | None,
     output: Path,
-    method: str,
-    preset: str,
+    method: str | None,
+    preset: str | None,
+    settings: tuple[tuple[str, str], ...],
+    model_path: Path | None,
+    body_path: Path | None,
     offline: bool,
     gyroscopes: bool,
     positions: Path | None,
     frame: str,
     json_path: Path | None,
-    places: tuple[tuple[str, float], ...],
+    positions_along_bone: tuple[tuple[str, float], ...],
     calibration_path: Path | None,
     clap: tuple[float, float] | None,
 ) -> None:
-    """Turns a take into a motion.
+    """Turns a take into a motion on the method's skeleton and at its rate.
 
-    The motion is on the database's standard skeleton and at its rate.
+    With a motion database that is the database's standard skeleton and rate.
     """
     check_ending(output, ".bvh")
-    check_presets(method, [preset])
-    recorded, known_places = _made_ideal(read_take(take), calibration_path, clap)
-    database = MotionDatabase(database_path)
-    where = places_of(recorded.sites, (*known_places, *places))
-    readings = readings_of(
-        recorded, database.rate_hz, places=where, offline=offline, uses_gyroscopes=gyroscopes
-    )
-    reconstructor = readings.channels.reconstructor(database, method=method, preset=preset)
+    choice = method_choice(method, preset, settings)
+    require_given(choice, database_path, model_path, body_path)
+    recorded = read_take(take)
+    if clap is not None:
+        recorded, _ = aligned(recorded, clap)
+    calibration = None if calibration_path is None else read_calibration(calibration_path)
+    if calibration is None:
+        positions_along_bone_of(recorded.sites, positions_along_bone)
+    database = None if database_path is None else MotionDatabase(database_path)
     with progress_bar("Reconstructing") as progress:
-        solved = reconstructor.solve(readings.values, offline=offline, progress=progress)
-    times, forces = readings.times_s, readings.specific_force
-    late = None if offline else latency_ms(reconstructor, database)
+        solved = reconstruct_take(
+            recorded,
+            database,
+            best_quality=offline,
+            method=choice.method,
+            preset=choice.preset,
+            options=choice.options,
+            calibration=calibration,
+            positions_along_bone=dict(positions_along_bone),
+            use_gyroscopes=gyroscopes,
+            model=model_of(choice, model_path, database),
+            body=None if body_path is None else read_body(body_path).skeleton,
+            progress=progress,
+        )
     write_bvh(output, solved.motion)
     if positions is not None:
         names = solved.motion.skeleton.names
-        write_positions(positions, times, names, solved.motion.joint_positions(frame))
+        where = solved.motion.joint_positions(frame)
+        write_positions(positions, solved.readings.times_s, names, where)
     if json_path is not None:
-        options = {"method": method, "preset": preset, "offline": offline, "places": where,
-                   "gyroscopes": any(readings.channels.has_up)}  # fmt: skip
-        about = {"take": str(take), "database": str(database_path), "options": options,
-                 "rate_hz": database.rate_hz, "latency_frames": reconstructor.latency_frames,
-                 "latency_ms": late}  # fmt: skip
-        told = report(database, recorded.sites, times, forces, solved)
-        write_json(json_path, about | told)
-    warn(suspicions(recorded))
-    _tell(output, solved, forces, late)
+        about = _about(take, database_path, choice, offline, solved)
+        write_json(json_path, about | report(solved, database))
+    warn(unit_warnings(recorded))
+    _print_summary(output, solved)
 
 
-def _made_ideal(
-    take: Take, calibration_path: Path | None, clap: tuple[float, float] | None
-) -> tuple[Take, list[tuple[str, float]]]:
-    """Returns the take on one clock and calibrated, and the places that its calibration knows."""
-    if clap is not None:
-        take, _ = aligned(take, clap)
-    if calibration_path is None:
-        return take, []
-    known = read_calibration(calibration_path)
-    found = calibrated_places(known, take)
-    take = apply(known, take)
-    return take, list(zip(take.sites, found, strict=True))
-
-
-def _tell(
-    output: Path, solved: Reconstruction, readings: NDArray[np.float64], late_ms: float | None
+def require_given(
+    choice: MethodChoice, database: Path | None, model: Path | None, body: Path | None
 ) -> None:
-    latency = "whole take" if late_ms is None else f"{late_ms:.0f} ms"
+    """Raises MissingParameter for what the method needs and the command line lacks."""
+    given = {"database": database, "model": model or database, "body": body}
+    for need in choice.info.needs:
+        if given[need] is None:
+            raise click.UsageError(f"Missing option '--{need}': {choice.method} needs it.")
+
+
+def model_of(choice: MethodChoice, path: Path | None, database: MotionDatabase | None) -> Any:
+    """Returns the model of the method: from a file of its own, or kept in the database."""
+    if path is not None:
+        return read_model(path)
+    if "model" in choice.info.needs and database is not None:
+        return database.model(choice.method)
+    return None
+
+
+def _about(
+    take: Path,
+    database: Path | None,
+    choice: MethodChoice,
+    offline: bool,
+    solved: Reconstruction,
+) -> dict[str, Any]:
+    late = solved.latency_s
+    channels = {channel for sensor in solved.readings.channels for channel in sensor}
+    return {
+        "format": "sparse_mocap_report",
+        "format_version": 1,
+        "take": str(take),
+        "database": None if database is None else str(database),
+        "options": {
+            "method": choice.method,
+            "preset": choice.preset,
+            "set": choice.options,
+            "offline": offline,
+            "positions_along_bone": solved.readings.positions_along_bone,
+            "gyroscopes": "gravity_direction" in channels,
+        },
+        "rate_hz": solved.rate_hz,
+        "latency_ms": None if late is None else 1000.0 * late,
+    }
+
+
+def _print_summary(output: Path, solved: Reconstruction) -> None:
+    late = solved.latency_s
+    quality = "best quality" if late is None else f"live quality, {1000.0 * late:.0f} ms behind"
     click.echo(
-        f"{output}: {len(readings)} frames, mean misfit {mean_misfit_mps2(solved):.2f} m/s^2,"
-        f" latency {latency}"
+        f"{output}: {solved.motion.num_frames} frames, {quality}; sensors match the motion "
+        f"database: {match(relative_misfit(solved))}"
     )
-    if is_unlike_the_database(solved, readings):
+    if is_unlike_the_database(solved):
         click.echo(
             "The database holds nothing like this performance: the motion is a guess. "
             "Add motion capture of such movements, and check where and how the sensors are worn."

@@ -1,8 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How good a reconstruction is: held-out clips, simulated sensors, known truth."""
 
-from .metrics import frame_errors, interpolated, joint_errors, mean_jerk
-from .performance import Performance, performed, reconstructed_positions
+from .contender import Contender, contenders, variants
+from .metrics import (
+    frame_errors,
+    interpolated,
+    joint_angle_errors_deg,
+    joint_errors,
+    mean_jerk,
+)
+from .performance import Performance, performed
 from .protocol import SCENARIOS, choose_tests, excluded_clips, motion_files, source_path
 from .result import ClipResult, Evaluation, TestClip
 from .runner import BASELINES, Settings, evaluate
@@ -11,19 +18,22 @@ __all__ = [
     "BASELINES",
     "SCENARIOS",
     "ClipResult",
+    "Contender",
     "Evaluation",
     "Performance",
     "Settings",
     "TestClip",
     "choose_tests",
+    "contenders",
     "evaluate",
     "excluded_clips",
     "frame_errors",
     "interpolated",
+    "joint_angle_errors_deg",
     "joint_errors",
     "mean_jerk",
     "motion_files",
     "performed",
-    "reconstructed_positions",
     "source_path",
+    "variants",
 ]

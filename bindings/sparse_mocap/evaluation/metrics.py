@@ -28,6 +28,21 @@ def frame_errors(errors: Floats) -> Floats:
     return np.asarray(np.sqrt(np.mean(errors**2, axis=1)))
 
 
+def joint_angle_errors_deg(truth: Floats, estimate: Floats) -> Floats:
+    """Returns the angles (T, J) between rotations (T, J, 4; unit quaternions)."""
+    cosine = np.abs(np.sum(truth * estimate, axis=-1))
+    return np.degrees(2.0 * np.arccos(np.minimum(cosine, 1.0)))
+
+
+def nearest(times_s: Floats, values: Floats, wanted_s: Floats) -> Floats:
+    """Returns the values (T, ...) whose times are nearest to those wanted."""
+    after = np.clip(np.searchsorted(times_s, wanted_s), 1, max(len(times_s) - 1, 1))
+    is_before = np.abs(times_s[after - 1] - wanted_s) <= np.abs(
+        times_s[np.minimum(after, len(times_s) - 1)] - wanted_s
+    )
+    return values[np.where(is_before, after - 1, np.minimum(after, len(times_s) - 1))]
+
+
 def mean_jerk(positions: Floats, rate_hz: float) -> float:
     """Returns the mean size of the joints' third derivative, in km/s^3; NaN under 4 frames."""
     if len(positions) < 4:

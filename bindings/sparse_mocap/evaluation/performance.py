@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from .. import (
     Motion,
     MotionDatabase,
-    Reconstruction,
     noise_presets,
     noisy,
     read_motion,
-    resampled,
     simulated,
     to_standard,
 )
+from ..readings import SensorInput
+from ..rotations import product
 from ..take import Take
 
 Floats = NDArray[np.float64]
@@ -36,10 +36,13 @@ class Performance:
     motion: Motion
     """On the standard skeleton with the performer's own proportions."""
     take: Take
-    times_s: Floats
-    """(T,) at the database's rate."""
-    readings: Floats
-    """(T, S, 3) m/s^2, as a method takes them."""
+
+    def inputs(self, channels: Sequence[Sequence[str]]) -> list[SensorInput]:
+        """Its sensors as a stream of readings takes them, with these channels."""
+        return [
+            SensorInput(site, list(wanted))
+            for site, wanted in zip(self.take.sites, channels, strict=True)
+        ]
 
     def motion_on(self, database: MotionDatabase) -> Motion:
         """The truth: the motion on the database's skeleton and at its rate."""
@@ -48,7 +51,6 @@ class Performance:
 
 def performed(
     path: str | os.PathLike[str],
-    database_rate_hz: float,
     *,
     sites: Sequence[str] = PAPER_SITES,
     noise: str = "none",
@@ -58,10 +60,17 @@ def performed(
     """Returns the performance of a motion file. Raises FormatError, MappingError and OSError."""
     motion, _ = to_standard(read_motion(path)[0])
     take = noisy(simulated(motion, sites, rate_hz), noise_presets()[noise], seed)
-    times, readings = resampled(take, database_rate_hz)
-    return Performance(motion, take, times, readings)
+    return Performance(motion, take)
 
 
-def reconstructed_positions(reconstruction: Reconstruction) -> Floats:
-    """Returns where the joints are, (T, 21, 3) m in the heading frame."""
-    return np.asarray(reconstruction.motion.joint_positions("heading"))
+def heading_rotations(motion: Motion) -> Floats:
+    """Returns each joint relative to its parent, (T, J, 4) w x y z, the root without heading."""
+    names = list(motion.skeleton.names)
+    ends = np.asarray(motion.joint_positions("world"))
+    left = ends[:, names.index("lhipjoint")] - ends[:, names.index("rhipjoint")]
+    half_yaw = 0.5 * np.arctan2(-left[:, 2], left[:, 0])
+    zero = np.zeros_like(half_yaw)
+    turned_back = np.stack([np.cos(half_yaw), zero, -np.sin(half_yaw), zero], axis=1)
+    rotations = np.array(motion.rotations)
+    rotations[:, 0] = product(turned_back, rotations[:, 0])
+    return rotations

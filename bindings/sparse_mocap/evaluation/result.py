@@ -27,6 +27,14 @@ class ClipResult:
     joint_errors_cm: Floats
     """(J,) mean over the frames."""
     jerk_kmps3: float
+    joint_angle_errors_deg: Floats | None = None
+    """(J,) mean over the frames; None where only positions are known."""
+
+    @property
+    def mean_angle_deg(self) -> float | None:
+        """The mean over frames and joints."""
+        angles = self.joint_angle_errors_deg
+        return None if angles is None else float(angles.mean())
 
     @property
     def mean_cm(self) -> float:
@@ -91,6 +99,12 @@ class Evaluation:
         """Returns the mean joint jerk, a mean over the tests."""
         return float(np.mean([test.results[method].jerk_kmps3 for test in self.tests]))
 
+    def angle_error_deg(self, method: str) -> float | None:
+        """Returns the mean joint angle error, a mean over the tests; None for positions alone."""
+        means = [test.results[method].mean_angle_deg for test in self.tests]
+        known = [mean for mean in means if mean is not None]
+        return float(np.mean(known)) if known else None
+
     def summary(self, method: str) -> dict[str, Any]:
         """Returns the figures of one method as JSON has them."""
         means, frames = self.clip_means_cm(method), self.frame_errors_cm(method)
@@ -100,6 +114,7 @@ class Evaluation:
             "mean_cm": float(means.mean()),
             "median_cm": float(np.median(means)),
             "p90_cm": float(np.percentile(means, 90)),
+            "joint_angle_deg": self.angle_error_deg(method),
             "jerk_kmps3": self.jerk_kmps3(method),
             "latency_ms": self.latencies_ms[method],
             "class_errors_cm": self.class_errors_cm(method),
@@ -131,6 +146,12 @@ class Evaluation:
         }
 
 
-def clip_result(errors_m: Floats, frame_errors_m: Floats, jerk_kmps3: float) -> ClipResult:
+def clip_result(
+    errors_m: Floats,
+    frame_errors_m: Floats,
+    jerk_kmps3: float,
+    angle_errors_deg: Floats | None = None,
+) -> ClipResult:
     """Returns the result with errors in cm: of the joints (T, J) and of the frames (T,)."""
-    return ClipResult(CM * frame_errors_m, CM * errors_m.mean(axis=0), jerk_kmps3)
+    angles = None if angle_errors_deg is None else angle_errors_deg.mean(axis=0)
+    return ClipResult(CM * frame_errors_m, CM * errors_m.mean(axis=0), jerk_kmps3, angles)

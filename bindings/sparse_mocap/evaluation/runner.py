@@ -15,17 +15,27 @@ from .. import (
     Clip,
     FormatError,
     MappingError,
+    Motion,
     MotionDatabase,
     Reconstruction,
     nearest_poses,
     nearest_windows,
     playback_best_path,
-    readings_of,
 )
-from ..reconstruction import latency_ms
+from ..readings import all_readings, channels_in
+from ..reconstruction import reconstruct
 from ..table_errors import TableError
-from .metrics import frame_errors, interpolated, joint_errors, mean_jerk
-from .performance import PAPER_SITES, Performance, performed, reconstructed_positions
+from .contender import Contender, contenders
+from .metrics import (
+    frame_errors,
+    interpolated,
+    joint_angle_errors_deg,
+    joint_errors,
+    mean_jerk,
+    nearest,
+)
+from .models import Trainer
+from .performance import PAPER_SITES, Performance, heading_rotations, performed
 from .protocol import choose_tests, excluded_clips, motion_files, source_path
 from .result import ClipResult, Evaluation, TestClip, clip_result
 
@@ -46,17 +56,29 @@ class Settings:
     """What an evaluation varies."""
 
     scenario: int = 1
-    method: str = "tautges2011"
-    presets: tuple[str, ...] = ("default", "paper")
-    with_offline: bool = False
-    """Runs every preset a second time, looking at the whole performance."""
+    contenders: tuple[Contender, ...] = ()
+    """Empty: every method that needs a database alone, live."""
     tests: str | None = None
     """A pattern on file names; None is one clip for each actor and class."""
+    pairs: tuple[tuple[str, str], ...] = ()
+    """Patterns on the names of training and test clips, in place of a scenario's split."""
     sites: tuple[str, ...] = PAPER_SITES
     noise: str = "none"
     seed: int = 0
     with_gyroscopes: bool = False
     """Whether the sensors are inertial ones, not accelerometers alone."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Where a method or baseline puts the joints."""
+
+    label: str
+    times_s: Floats
+    positions: Floats
+    """(T, J, 3) m, heading frame."""
+    rotations: Floats | None = None
+    """(T, J, 4), root without heading; None for baselines that only know positions."""
 
 
 def evaluate(
@@ -83,8 +105,10 @@ class _Run:
         progress: Progress | None,
     ) -> None:
         self.database, self.settings, self.progress = database, settings, progress
+        self.contenders = settings.contenders or tuple(contenders(("path_regression",)))
         self.clips: list[Clip] = database.clips
         self.files = motion_files(source)
+        self.trainer = Trainer(self.clips, self.files)
         self.truths = database.array("positions").reshape(database.num_frames, -1, 3)
         self.evaluation = Evaluation(
             settings.scenario,
@@ -95,19 +119,36 @@ class _Run:
         )
 
     def run(self) -> Evaluation:
-        tests = choose_tests(self.clips, self.settings.tests)
+        tests = self._tests()
         if not tests:
             raise self._nothing_to_test(f"no clip matches {self.settings.tests!r}")
-        for done, test in enumerate(tests):
+        for done, (test, excluded) in enumerate(tests):
             self._report(done, len(tests), self.clips[test].name)
             try:
-                self._test(test)
+                self._test(test, excluded)
             except (FormatError, MappingError) as error:
                 self.evaluation.left_out.append(f"{self.clips[test].name}: {error}")
         self._report(len(tests), len(tests), "")
         if not self.evaluation.tests:
             raise self._nothing_to_test(self.evaluation.left_out[0])
         return self.evaluation
+
+    def _tests(self) -> list[tuple[int, list[int]]]:
+        """Returns the clips to test, and for each those that the database must not have then."""
+        settings = self.settings
+        if not settings.pairs:
+            return [
+                (test, excluded_clips(self.clips, test, settings.scenario))
+                for test in choose_tests(self.clips, settings.tests)
+            ]
+        found = []
+        for training, pattern in settings.pairs:
+            known = set(choose_tests(self.clips, training))
+            for test in choose_tests(self.clips, pattern):
+                hidden = set(excluded_clips(self.clips, test, 1))
+                others = set(range(len(self.clips))) - known
+                found.append((test, sorted(hidden | others)))
+        return found
 
     def _nothing_to_test(self, reason: str) -> FormatError:
         return TableError(self.database.path, 0, f"nothing can be tested: {reason}")
@@ -116,14 +157,12 @@ class _Run:
         if self.progress is not None and self.progress(done, total, what) is False:
             raise Cancelled("cancelled")
 
-    def _test(self, index: int) -> None:
+    def _test(self, index: int, excluded: list[int]) -> None:
         clip = self.clips[index]
-        excluded = excluded_clips(self.clips, index, self.settings.scenario)
         if len(excluded) == len(self.clips):
             raise TableError(clip.source, 0, "is all that the scenario's database would hold")
         performance = performed(
             source_path(self.files, clip),
-            self.database.rate_hz,
             sites=self.settings.sites,
             noise=self.settings.noise,
             seed=self.settings.seed,
@@ -137,69 +176,82 @@ class _Run:
             len(excluded),
             mean_jerk(truth, self.database.rate_hz),
         )
-        for method, times, positions in self._estimates(performance, truth, excluded):
-            test.results[method] = self._compared(truth, times, positions)
+        true_motion = performance.motion_on(self.database)
+        estimates = [self._estimate(one, performance, excluded) for one in self.contenders]
+        for estimate in estimates + self._baselines(performance, truth, excluded):
+            test.results[estimate.label] = self._compared(truth, true_motion, estimate)
         self.evaluation.tests.append(test)
 
-    def _estimates(
-        self, performance: Performance, truth: Floats, excluded: Sequence[int]
-    ) -> list[tuple[str, Floats, Floats]]:
-        """Returns name, times and positions (heading frame) of every method and baseline."""
-        found = []
-        for preset in self.settings.presets:
-            for is_offline in (False, True) if self.settings.with_offline else (False,):
-                name = f"{preset}, offline" if is_offline else preset
-                solved = self._solved(name, preset, is_offline, performance, excluded)
-                found.append((name, performance.times_s, reconstructed_positions(solved)))
-        return found + self._baselines(performance, truth, excluded)
+    def _estimate(
+        self, contender: Contender, performance: Performance, excluded: Sequence[int]
+    ) -> Estimate:
+        solved = self._solved(contender, performance, excluded)
+        late = solved.latency_s
+        self.evaluation.latencies_ms[contender.label] = None if late is None else 1000.0 * late
+        motion = solved.motion
+        return Estimate(
+            contender.label,
+            np.asarray(solved.readings.times_s),
+            np.asarray(motion.joint_positions("heading")),
+            heading_rotations(motion),
+        )
 
     def _solved(
-        self,
-        name: str,
-        preset: str,
-        is_offline: bool,
-        performance: Performance,
-        excluded: Sequence[int],
+        self, contender: Contender, performance: Performance, excluded: Sequence[int]
     ) -> Reconstruction:
-        readings = readings_of(
+        needs = contender.info.needs
+        return reconstruct(
             performance.take,
-            self.database.rate_hz,
-            offline=is_offline,
-            uses_gyroscopes=self.settings.with_gyroscopes,
+            self.database if "database" in needs else None,
+            method=contender.method,
+            preset=contender.preset,
+            options=contender.options,
+            best_quality=contender.best_quality,
+            use_gyroscopes=self.settings.with_gyroscopes,
+            model=self.trainer.model(contender, excluded) if "model" in needs else None,
+            body=performance.motion.skeleton if "body" in needs else None,
+            excluded_clips=excluded if "database" in needs else (),
         )
-        reconstructor = readings.channels.reconstructor(
-            self.database, method=self.settings.method, preset=preset, excluded_clips=excluded
-        )
-        late = None if is_offline else latency_ms(reconstructor, self.database)
-        self.evaluation.latencies_ms[name] = late
-        return reconstructor.solve(readings.values, offline=is_offline)
 
     def _baselines(
         self, performance: Performance, truth: Floats, excluded: Sequence[int]
-    ) -> list[tuple[str, Floats, Floats]]:
-        database, sites, readings = self.database, self.settings.sites, performance.readings
+    ) -> list[Estimate]:
+        database = self.database
+        take = performance.take
+        channels = [channels_in(record)[:1] for record in take.sensors.values()]
+        readings = all_readings(take, performance.inputs(channels), database.rate_hz)
         truth_times = np.arange(len(truth)) / database.rate_hz
         frames = (
             (truth_times, nearest_poses(database, truth, excluded)),
-            (performance.times_s, playback_best_path(database, sites, readings, excluded)),
-            (performance.times_s, nearest_windows(database, sites, readings, WINDOW, excluded)),
+            (readings.times_s, playback_best_path(database, readings, excluded)),
+            (readings.times_s, nearest_windows(database, readings, WINDOW, excluded)),
         )
         found = [
-            (name, times, np.asarray(self.truths[rows], float))
+            Estimate(name, times, np.asarray(self.truths[rows], float))
             for name, (times, rows) in zip(BASELINES, frames, strict=False)
         ]
         mean_pose = np.broadcast_to(truth.mean(axis=0), truth.shape)
-        found.append(("mean pose", truth_times, mean_pose))
+        found.append(Estimate("mean pose", truth_times, mean_pose))
         self.evaluation.latencies_ms |= dict.fromkeys(BASELINES)
         return found
 
-    def _compared(self, truth: Floats, times: Floats, positions: Floats) -> ClipResult:
+    def _compared(self, truth: Floats, true_motion: Motion, estimate: Estimate) -> ClipResult:
         """Compares where both are known; the estimate is taken at the truth's times."""
+        times = estimate.times_s
         truth_times = np.arange(len(truth)) / self.database.rate_hz
         is_known = (truth_times >= times[0] - 1e-6) & (truth_times <= times[-1] + 1e-6)
         if not is_known.any():
             raise TableError(self.database.path, 0, "the performance is too short to compare")
-        estimate = interpolated(times, positions, truth_times[is_known])
-        errors = joint_errors(truth[is_known], estimate)
-        jerk = mean_jerk(positions, self.database.rate_hz)
-        return clip_result(errors, frame_errors(errors), jerk)
+        wanted = truth_times[is_known]
+        errors = joint_errors(truth[is_known], interpolated(times, estimate.positions, wanted))
+        angles = None
+        if estimate.rotations is not None:
+            count = min(int(is_known.sum()), true_motion.num_frames)
+            true_rotations = heading_rotations(true_motion)[: len(truth)]
+            known = is_known[: len(true_rotations)]
+            angles = joint_angle_errors_deg(
+                true_rotations[known][:count],
+                nearest(times, estimate.rotations, truth_times[: len(known)][known][:count]),
+            )
+        jerk = mean_jerk(estimate.positions, self.database.rate_hz)
+        return clip_result(errors, frame_errors(errors), jerk, angles)

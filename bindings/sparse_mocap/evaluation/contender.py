@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What an evaluation compares: methods with their settings, in live or best quality."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..methods import Experiment, MethodInfo, method_info
+
+
+@dataclass(frozen=True)
+class Contender:
+    """One way of reconstructing, under the name that tables give it."""
+
+    label: str
+    method: str
+    preset: str | None = None
+    options: Mapping[str, Any] = field(default_factory=dict)
+    best_quality: bool = False
+
+    @property
+    def info(self) -> MethodInfo:
+        """Its method."""
+        return method_info(self.method)
+
+
+def contenders(
+    methods: Sequence[str],
+    *,
+    presets: Sequence[str] = (),
+    options: Mapping[str, Any] | None = None,
+    with_best_quality: bool = False,
+) -> list[Contender]:
+    """Returns every method in every preset that it has of those named, live and, if wanted, best.
+
+    A method that works on whole takes only is always there. Without presets the default one is
+    used.
+    """
+    found = []
+    for name in methods:
+        info = method_info(name)
+        for preset in [preset.name for preset in info.presets if preset.name in presets] or [None]:
+            label = name if preset is None or len(info.presets) == 1 else f"{name} {preset}"
+            if info.works_live:
+                found.append(Contender(label, name, preset, options or {}))
+            if info.works_on_whole_takes and (with_best_quality or not info.works_live):
+                found.append(Contender(f"{label}, best", name, preset, options or {}, True))
+    return found
+
+
+def variants(method: str, experiment: Experiment) -> list[Contender]:
+    """Returns what an experiment of a method compares."""
+    is_live = method_info(method).works_live
+    return [
+        Contender(label, method, None, options, not is_live)
+        for label, options in experiment.variants
+    ]
