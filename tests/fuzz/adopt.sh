@@ -6,7 +6,7 @@
 set -eu
 cd "$(dirname "$(readlink -f "$0")")/../.."
 format=$1
-case $format in database) ending=smdb ;; *) ending=$format ;; esac
+case $format in database) ending=smdb ;; model) ending=smmodel ;; *) ending=$format ;; esac
 corpus=tests/fuzz/corpus/$format
 rm -f "$corpus"/fuzz_*
 chosen=$(mktemp -d)

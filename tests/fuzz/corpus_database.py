@@ -136,6 +136,44 @@ def damaged_arrays() -> dict[str, bytes]:
     return {name: file_of(metadata, arrays) for name, arrays in files.items()}
 
 
+def with_models() -> dict[str, bytes]:
+    """Models and what other programs put into a database, sound and not."""
+    metadata, arrays = metadata_of([1]), arrays_of([1])
+    entry = {"version": 1, "metadata": {"made of": "walks"}}
+    tensor = {"models/a/W": struct.pack("<2f", 1.0, 2.0)}
+    good = metadata | {"models": json.dumps({"a": entry})}
+    lists = [
+        "", "[]", "{}", "null", "[" * 300, '{"a":1}', '{"a":{}}', '{"A":{}}', '{"a/b":{}}',
+        '{"a":{},"a":{}}', json.dumps({"b": entry}), json.dumps({"a": entry, "b": entry}),
+        json.dumps({"a": entry | {"version": 0}}), json.dumps({"a": entry | {"version": "1"}}),
+        json.dumps({"a": entry | {"version": 2**40}}), json.dumps({"a": entry | {"version": 1.5}}),
+        json.dumps({"a": entry | {"metadata": {"x": 1}}}), json.dumps({"a": {"version": 1}}),
+        json.dumps({"a": entry | {"a later key": [1]}}),
+    ]  # fmt: skip
+    files = {
+        "model": file_of(good, arrays | tensor),
+        "model_before_the_rows": file_of(good, tensor | arrays),
+        "model_without_tensors": file_of(good, arrays),
+        "model_with_nan": file_of(good, arrays | {"models/a/W": b"\0\0\xc0\x7f"}),
+        "model_without_name": file_of(good, arrays | {"models/a/": tensor["models/a/W"]}),
+        "model_not_listed": file_of(metadata, arrays | tensor),
+        "further_metadata": file_of(metadata | {"a later key": "a value"}, arrays),
+    }
+    for index, text in enumerate(lists):
+        files[f"models_{index}"] = file_of(metadata | {"models": text}, arrays | tensor)
+    for name in ("spare", "models/a/W", "up"):  # not in the checksums
+        header = header_of(good, {n: a for n, a in arrays.items() if n != name})
+        begin = sum(len(a) for n, a in arrays.items() if n != name)
+        content = arrays.get(name, b"\1\2\3\4")
+        header[name] = {
+            "dtype": "F32", "shape": [1, len(content) // 4],
+            "data_offsets": [begin, begin + len(content)],
+        }  # fmt: skip
+        data = b"".join(a for n, a in arrays.items() if n != name) + content
+        files[f"without_checksum_{name.replace('/', '_')}"] = encoded(header, data)
+    return files
+
+
 def damaged_headers() -> dict[str, bytes]:
     arrays = arrays_of([1])
     data = b"".join(arrays.values())
@@ -183,5 +221,5 @@ def database_files() -> dict[str, bytes]:
         ),
     }  # fmt: skip
     files |= {f"cut_{part:02}": whole[: len(whole) * part // 12] for part in range(1, 12)}
-    files |= damaged_metadata() | damaged_arrays() | damaged_headers()
+    files |= damaged_metadata() | damaged_arrays() | damaged_headers() | with_models()
     return files

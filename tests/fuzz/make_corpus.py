@@ -11,9 +11,10 @@ from pathlib import Path
 from corpus_acclaim import acclaim_files
 from corpus_bvh import bvh_files
 from corpus_database import database_files
+from corpus_model import model_files
 
 HERE = Path(__file__).resolve().parent / "corpus"
-ENDINGS = {"bvh": ".bvh", "acclaim": ".acclaim", "database": ".smdb"}
+ENDINGS = {"bvh": ".bvh", "acclaim": ".acclaim", "database": ".smdb", "model": ".smmodel"}
 
 
 def write(kind: str, files: dict[str, bytes]) -> None:
@@ -35,6 +36,7 @@ def main() -> None:
     write("bvh", bvh_files())
     write("acclaim", acclaim_files())
     write("database", database_files())
+    write("model", model_files())
 
 
 if __name__ == "__main__":

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fuzz/targets.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "sparse_mocap/base/checksum.hpp"
+#include "sparse_mocap/database/container.hpp"
+#include "sparse_mocap/database/database_content.hpp"
+#include "sparse_mocap/database/model_file.hpp"
 #include "sparse_mocap/database/motion_database.hpp"
-#include "sparse_mocap/database/safetensors.hpp"
 #include "sparse_mocap/formats/acclaim.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
 #include "support/invariants.hpp"
@@ -105,15 +110,20 @@ std::string try_both_line_ends(std::string_view input, const Read& read) {
   return second.problem;
 }
 
-// The same arrays and metadata with the checksums that belong to them.
-std::vector<std::byte> resealed(std::span<const std::byte> file) {
-  const auto view = parse_safetensors(file, "fuzz.smdb");
-  auto metadata = view.metadata;
+// The same arrays and metadata with the checksums that belong to them; nothing where the container
+// itself is damaged.
+std::optional<std::vector<std::byte>> resealed(std::span<const std::byte> file) {
+  SafetensorsView view;
+  try {
+    view = parse_safetensors(file);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
   nlohmann::json checksums = nlohmann::json::object();
   for (const auto& tensor : view.tensors) checksums[tensor.name] = checksum(tensor.bytes);
-  metadata["checksums"] = checksums.dump();
-  metadata[kMetadataChecksum] = metadata_checksum(metadata);
-  const auto header = safetensors_header(metadata, view.tensors);
+  view.metadata["checksums"] = checksums.dump();
+  view.metadata[kMetadataChecksum] = metadata_checksum(view.metadata);
+  const auto header = safetensors_header(view.metadata, view.tensors);
   const auto header_bytes = std::as_bytes(std::span(header));
   std::vector<std::byte> result(header_bytes.begin(), header_bytes.end());
   for (const auto& tensor : view.tensors)
@@ -121,10 +131,65 @@ std::vector<std::byte> resealed(std::span<const std::byte> file) {
   return result;
 }
 
+// Runs try_bytes on the input, and on the input with its checksums put right.
+template <typename TryBytes>
+std::string try_both_checksums(std::string_view input, const TryBytes& try_bytes) {
+  const auto bytes = std::as_bytes(std::span(input));
+  if (auto problem = try_bytes({bytes.begin(), bytes.end()}); !problem.empty()) return problem;
+  const auto sealed = resealed(bytes);
+  return sealed ? try_bytes(*sealed) : "";
+}
+
+// What a model must be, whoever hands it out; written again it must be the same.
+std::string problem_of(const Model& model) {
+  check_model(model);  // throws std::invalid_argument, which nobody catches
+  const auto again = model_from_bytes(encode_model(model), "fuzz.smmodel");
+  const bool is_same = again.method == model.method && again.version == model.version &&
+                       again.metadata == model.metadata && again.tensors == model.tensors;
+  return is_same ? "" : "the model written again is another";
+}
+
+std::string try_models(const MotionDatabase& database) {
+  for (const auto& method : database.model_names()) {
+    try {
+      if (auto problem = problem_of(database.model(method)); !problem.empty()) return problem;
+    } catch (const FormatError& error) {
+      if (auto problem = problem_of(error, false); !problem.empty()) return problem;
+    }
+  }
+  return "";
+}
+
+// The file written again as add and drop do must hold the same further content.
+std::string try_copy(const MotionDatabase& database) {
+  const auto copy =
+      MotionDatabase::from_bytes(own_bytes(encode_database(database_content(database))), "copy");
+  if (copy->further().metadata != database.further().metadata) return "metadata got lost";
+  if (copy->further().tensors.size() != database.further().tensors.size())
+    return "an array got lost";
+  for (const auto& tensor : database.further().tensors) {
+    const Tensor* kept = copy->further().find(tensor.name);
+    if (kept == nullptr || kept->type != tensor.type || kept->shape != tensor.shape ||
+        !std::ranges::equal(kept->bytes, tensor.bytes))
+      return "an array was changed";
+  }
+  return "";
+}
+
 std::string try_database_bytes(std::vector<std::byte> bytes) {
   try {
     const auto database = MotionDatabase::from_bytes(own_bytes(std::move(bytes)), "fuzz.smdb");
-    return testing::joined(testing::check_database(*database));
+    auto problem = testing::joined(testing::check_database(*database));
+    if (problem.empty()) problem = try_models(*database);
+    return problem.empty() ? try_copy(*database) : problem;
+  } catch (const FormatError& error) {
+    return problem_of(error, false);
+  }
+}
+
+std::string try_model_bytes(const std::vector<std::byte>& bytes) {
+  try {
+    return problem_of(model_from_bytes(bytes, "fuzz.smmodel"));
   } catch (const FormatError& error) {
     return problem_of(error, false);
   }
@@ -154,14 +219,9 @@ std::string try_acclaim(std::string_view input) {
 }
 
 std::string try_database(std::string_view input) {
-  const auto bytes = std::as_bytes(std::span(input));
-  if (auto problem = try_database_bytes({bytes.begin(), bytes.end()}); !problem.empty())
-    return problem;
-  try {
-    return try_database_bytes(resealed(bytes));
-  } catch (const FormatError& error) {
-    return problem_of(error, false);
-  }
+  return try_both_checksums(input, try_database_bytes);
 }
+
+std::string try_model(std::string_view input) { return try_both_checksums(input, try_model_bytes); }
 
 }  // namespace sparse_mocap::fuzz

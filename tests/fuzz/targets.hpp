@@ -19,6 +19,9 @@ std::string try_acclaim(std::string_view input);
 // An .smdb, as it is, and with its checksums put right, so that what they guard is reached.
 std::string try_database(std::string_view input);
 
+// An .smmodel, likewise.
+std::string try_model(std::string_view input);
+
 // [which parser][how the bytes are cut][bytes of a device], see streams.hpp: samples must be
 // plausible, and the same however the bytes are cut.
 std::string try_streams(std::string_view input);

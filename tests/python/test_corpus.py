@@ -11,7 +11,7 @@ import pytest
 FUZZ = Path(__file__).resolve().parents[1] / "fuzz"
 
 
-@pytest.mark.parametrize("kind", ["bvh", "acclaim", "database"])
+@pytest.mark.parametrize("kind", ["bvh", "acclaim", "database", "model"])
 def test_the_corpus_is_what_its_script_makes(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(FUZZ)
     made = getattr(importlib.import_module(f"corpus_{kind}"), f"{kind}_files")()

@@ -14,6 +14,9 @@ std::string one_line(const FileLocation& location, const std::string& problem,
   if (!text.empty()) text += ": ";
   text += problem;
   if (!remedy.empty()) text += "; " + remedy;
+  // Names in files and of files may hold anything.
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
   return text;
 }
 

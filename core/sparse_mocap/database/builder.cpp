@@ -167,6 +167,9 @@ BuildReport add_to_database(const fs::path& database, const std::vector<fs::path
   check(options);
   const auto start = std::chrono::steady_clock::now();
   DatabaseContent content = database_content(*MotionDatabase::open(database));
+  if (content.site_names != all_site_names())
+    throw FormatError({database}, "holds the readings of other sensor sites",
+                      "build it again with 'sparse-mocap database build'");
   const CopyOptions copies = copies_in(content, database);
   Importer importer(sources, options, progress);
   importer.recognise(content);

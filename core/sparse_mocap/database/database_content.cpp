@@ -8,9 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sparse_mocap/base/files.hpp"
+#include "sparse_mocap/database/container.hpp"
 #include "sparse_mocap/database/motion_database.hpp"
-#include "sparse_mocap/database/safetensors.hpp"
 #include "sparse_mocap/sensors/filter.hpp"
 
 namespace sparse_mocap {
@@ -89,14 +88,9 @@ json sources_json(const SourceRecord& sources) {
 
 using Piece = std::span<const std::byte>;
 
-// An array of the file in pieces that lie where the content has them.
-struct Array {
-  Tensor tensor;  // without its bytes
-  std::vector<Piece> pieces;
-};
-
-Array gathered(const char* name, const DatabaseContent& content, Rows DatabaseRows::*member) {
-  Array array{{name, ElementType::f32, {0, 0}, {}}, {}};
+ArrayInPieces gathered(const char* name, const DatabaseContent& content,
+                       Rows DatabaseRows::*member) {
+  ArrayInPieces array{{name, ElementType::f32, {0, 0}, {}}, {}};
   for (const auto& rows : content.clip_rows) {
     const Rows& part = rows.*member;
     array.tensor.shape[0] += static_cast<std::size_t>(part.rows());
@@ -115,83 +109,73 @@ std::vector<std::int32_t> clip_indices(const DatabaseContent& content) {
   return indices;
 }
 
-std::map<std::string, std::string> metadata_of(const DatabaseContent& content,
-                                               const std::vector<Array>& arrays) {
-  json sites = json::array();
-  for (const auto& site : all_sites()) sites.push_back(std::string(site.name));
-  json checksums;
-  for (const auto& array : arrays) checksums[array.tensor.name] = checksum_of_pieces(array.pieces);
-  std::map<std::string, std::string> metadata{
-      {"format", "sparse_mocap_database"},
-      {"format_version", std::to_string(kDatabaseFormatVersion)},
-      {"rate_hz", json(content.rate_hz).dump()},
-      {"filter", json{{"kind", "gaussian"},
-                      {"marker_sigma_s", kMarkerFilter.sigma_s},
-                      {"reading_sigma_s", kReadingFilter.sigma_s}}
-                     .dump()},
-      {"skeleton", skeleton_json(content.skeleton).dump()},
-      {"sites", sites.dump()},
-      {"clips", dumped(clips_json(content))},
-      {"sources", dumped(sources_json(content.sources))},
-      {"build", content.build_info},
-      {"checksums", checksums.dump()},
-  };
-  metadata[kMetadataChecksum] = metadata_checksum(metadata);
+std::map<std::string, std::string> metadata_of(const DatabaseContent& content) {
+  std::map<std::string, std::string> metadata = content.further.metadata;
+  metadata["rate_hz"] = json(content.rate_hz).dump();
+  metadata["filter"] = json{{"kind", "gaussian"},
+                            {"marker_sigma_s", kMarkerFilter.sigma_s},
+                            {"reading_sigma_s", kReadingFilter.sigma_s}}
+                           .dump();
+  metadata["skeleton"] = skeleton_json(content.skeleton).dump();
+  metadata["sites"] = dumped(content.site_names);
+  metadata["clips"] = dumped(clips_json(content));
+  metadata["sources"] = dumped(sources_json(content.sources));
+  metadata["build"] = content.build_info;
   return metadata;
 }
 
-// A file as pieces: what they view lives in the content and here.
+std::vector<ArrayInPieces> all_arrays(const DatabaseContent& content,
+                                      const std::vector<std::int32_t>& indices) {
+  std::vector<ArrayInPieces> arrays{
+      gathered("angles", content, &DatabaseRows::angles),
+      gathered("positions", content, &DatabaseRows::positions),
+      gathered("root_motion", content, &DatabaseRows::root_motion),
+      gathered("contacts", content, &DatabaseRows::contacts),
+      gathered("specific_force_pivot", content, &DatabaseRows::specific_force_pivot),
+      gathered("specific_force_end", content, &DatabaseRows::specific_force_end),
+      gathered("angular_velocity", content, &DatabaseRows::angular_velocity),
+      gathered("up", content, &DatabaseRows::gravity_direction),
+      {{"clip_index", ElementType::i32, {indices.size(), 1}, {}},
+       {std::as_bytes(std::span(indices))}}};
+  for (const auto& tensor : content.further.tensors) arrays.push_back({tensor, {tensor.bytes}});
+  return arrays;
+}
+
+// A file in pieces that view the content and what is kept here.
 class EncodedDatabase {
  public:
-  explicit EncodedDatabase(const DatabaseContent& content) : indices_(clip_indices(content)) {
-    if (content.clips.empty() || content.clips.size() != content.clip_rows.size())
-      throw std::invalid_argument("a database's clips and their rows do not correspond");
-    const auto arrays = all_arrays(content);
-    std::vector<Tensor> tensors;
-    for (const auto& array : arrays) tensors.push_back(array.tensor);
-    header_ = safetensors_header(metadata_of(content, arrays), tensors);
-    pieces_.push_back(std::as_bytes(std::span(header_)));
-    for (const auto& array : arrays)
-      pieces_.insert(pieces_.end(), array.pieces.begin(), array.pieces.end());
-  }
-  EncodedDatabase(const EncodedDatabase&) = delete;
-  EncodedDatabase& operator=(const EncodedDatabase&) = delete;
+  explicit EncodedDatabase(const DatabaseContent& content)
+      : indices_(clip_indices(content)),
+        container_(kDatabaseFormat, metadata_of(content), all_arrays(content, indices_)) {}
 
-  std::span<const Piece> pieces() const { return pieces_; }
+  const EncodedContainer& container() const { return container_; }
 
  private:
-  std::vector<Array> all_arrays(const DatabaseContent& content) const {
-    return {gathered("angles", content, &DatabaseRows::angles),
-            gathered("positions", content, &DatabaseRows::positions),
-            gathered("root_motion", content, &DatabaseRows::root_motion),
-            gathered("contacts", content, &DatabaseRows::contacts),
-            gathered("specific_force_pivot", content, &DatabaseRows::specific_force_pivot),
-            gathered("specific_force_end", content, &DatabaseRows::specific_force_end),
-            gathered("angular_velocity", content, &DatabaseRows::angular_velocity),
-            gathered("up", content, &DatabaseRows::up),
-            {{"clip_index", ElementType::i32, {indices_.size(), 1}, {}},
-             {std::as_bytes(std::span(indices_))}}};
-  }
-
   std::vector<std::int32_t> indices_;
-  std::string header_;
-  std::vector<Piece> pieces_;
+  EncodedContainer container_;
 };
+
+void check(const DatabaseContent& content) {
+  if (content.clips.empty() || content.clips.size() != content.clip_rows.size())
+    throw std::invalid_argument("a database's clips and their rows do not correspond");
+}
 
 }  // namespace
 
 DatabaseContent database_content(const MotionDatabase& database) {
-  DatabaseContent content{database.skeleton(), database.rate_hz(),   database.clips(), {},
-                          database.sources(),  database.build_info()};
+  DatabaseContent content{
+      database.skeleton(), database.rate_hz(),    database.clips(),      {},
+      database.sources(),  database.build_info(), database.site_names(), database.further(),
+      database.bytes()};
   for (const Clip& clip : database.clips()) {
     const auto of_clip = [&](const FloatRows& rows) {
       return Rows(rows.middleRows(clip.begin, clip.num_frames()));
     };
-    content.clip_rows.push_back({of_clip(database.angles()), of_clip(database.positions()),
-                                 of_clip(database.root_motion()), of_clip(database.contacts()),
-                                 of_clip(database.specific_force_pivot()),
-                                 of_clip(database.specific_force_end()),
-                                 of_clip(database.angular_velocity()), of_clip(database.up())});
+    content.clip_rows.push_back(
+        {of_clip(database.angles()), of_clip(database.positions()), of_clip(database.root_motion()),
+         of_clip(database.contacts()), of_clip(database.specific_force_pivot()),
+         of_clip(database.specific_force_end()), of_clip(database.angular_velocity()),
+         of_clip(database.gravity_direction())});
   }
   return content;
 }
@@ -214,15 +198,19 @@ void remove_clips(DatabaseContent& content,
 }
 
 std::vector<std::byte> encode_database(const DatabaseContent& content) {
-  const EncodedDatabase encoded(content);
-  std::vector<std::byte> file;
-  for (const Piece piece : encoded.pieces()) file.insert(file.end(), piece.begin(), piece.end());
-  return file;
+  check(content);
+  return EncodedDatabase(content).container().bytes();
 }
 
 void write_database(const std::filesystem::path& path, const DatabaseContent& content) {
-  const EncodedDatabase encoded(content);
-  write_file_atomically(path, encoded.pieces());
+  check(content);
+  EncodedDatabase(content).container().write(path);
+}
+
+std::vector<std::string> all_site_names() {
+  std::vector<std::string> names;
+  for (const auto& site : all_sites()) names.emplace_back(site.name);
+  return names;
 }
 
 }  // namespace sparse_mocap

@@ -4,15 +4,20 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "sparse_mocap/database/clip.hpp"
 #include "sparse_mocap/database/database_rows.hpp"
 #include "sparse_mocap/database/motion_database.hpp"
+#include "sparse_mocap/database/safetensors.hpp"
 #include "sparse_mocap/motion/skeleton.hpp"
 
 namespace sparse_mocap {
+
+// The sites of which databases built now hold the readings.
+std::vector<std::string> all_site_names();
 
 // Everything that a database file holds, while it is being made.
 struct DatabaseContent {
@@ -22,6 +27,10 @@ struct DatabaseContent {
   std::vector<DatabaseRows> clip_rows;  // one entry a clip
   SourceRecord sources;
   std::string build_info;  // JSON: options, counts, versions
+  std::vector<std::string> site_names = all_site_names();
+  // What else is to be in the file, see MotionDatabase::further, and the bytes that it views.
+  SafetensorsView further;
+  std::shared_ptr<const Bytes> further_bytes;
 };
 
 // The content of an opened database.

@@ -27,8 +27,8 @@ void fill_readings(const Motion& motion, const std::vector<double>& wanted_s, Da
   for (int t = 0; t < motion.num_frames(); ++t) times_s.push_back(t * motion.frame_time_s);
   const auto n = static_cast<Eigen::Index>(wanted_s.size());
   const auto columns = static_cast<Eigen::Index>(3 * all_sites().size());
-  for (auto* target :
-       {&rows.specific_force_pivot, &rows.specific_force_end, &rows.angular_velocity, &rows.up})
+  for (auto* target : {&rows.specific_force_pivot, &rows.specific_force_end, &rows.angular_velocity,
+                       &rows.gravity_direction})
     target->resize(n, columns);
   const auto readings = virtual_readings(motion, all_sites());
   for (std::size_t s = 0; s < readings.size(); ++s) {
@@ -38,7 +38,8 @@ void fill_readings(const Motion& motion, const std::vector<double>& wanted_s, Da
         sampled(r.specific_force_pivot, times_s, wanted_s);
     rows.specific_force_end.middleCols(at, 3) = sampled(r.specific_force_end, times_s, wanted_s);
     rows.angular_velocity.middleCols(at, 3) = sampled(r.angular_velocity, times_s, wanted_s);
-    rows.up.middleCols(at, 3) = sampled(r.up, times_s, wanted_s).rowwise().normalized();
+    rows.gravity_direction.middleCols(at, 3) =
+        sampled(r.up, times_s, wanted_s).rowwise().normalized();
   }
 }
 

@@ -11,7 +11,7 @@ namespace sparse_mocap {
 struct DatabaseRows {
   using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Rows angles, positions, root_motion, contacts;
-  Rows specific_force_pivot, specific_force_end, angular_velocity, up;
+  Rows specific_force_pivot, specific_force_end, angular_velocity, gravity_direction;
 
   int num_frames() const { return static_cast<int>(angles.rows()); }
 };

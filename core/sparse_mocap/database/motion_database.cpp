@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+#include <utility>
 
 #include "sparse_mocap/base/errors.hpp"
-#include "sparse_mocap/database/safetensors.hpp"
+#include "sparse_mocap/database/container.hpp"
+#include "sparse_mocap/database/stored_models.hpp"
 
 namespace sparse_mocap {
 
@@ -14,15 +18,13 @@ namespace sparse_mocap {
 class DatabaseReader {
  public:
   DatabaseReader(std::shared_ptr<const Bytes> bytes, const std::filesystem::path& path)
-      : path_(path), view_(parse_safetensors(bytes->view(), path)) {
+      : container_(bytes->view(), path, kDatabaseFormat) {
     database_.bytes_ = std::move(bytes);
     database_.path_ = path;
   }
 
   MotionDatabase read() {
-    check_version();
     try {
-      check_checksums();
       read_settings();
       read_arrays();
       read_sources();
@@ -31,42 +33,16 @@ class DatabaseReader {
       refuse("its metadata is damaged");
     }
     check_values();
+    read_further();
     return std::move(database_);
   }
 
  private:
   using json = nlohmann::json;
 
-  [[noreturn]] void refuse(const std::string& problem) const {
-    throw FormatError({path_}, "not a sound motion database: " + problem,
-                      "build it again with 'sparse-mocap database build'");
-  }
+  [[noreturn]] void refuse(const std::string& problem) const { container_.refuse(problem); }
 
-  const std::string& text(const char* key) const {
-    const auto at = view_.metadata.find(key);
-    if (at == view_.metadata.end()) refuse(std::string("'") + key + "' is missing");
-    return at->second;
-  }
-
-  void check_version() const {
-    if (!view_.metadata.contains("format") || text("format") != "sparse_mocap_database")
-      refuse("it is a safetensors file of something else");
-    const std::string& version = text("format_version");
-    if (version == std::to_string(kDatabaseFormatVersion)) return;
-    throw FormatError({path_},
-                      "is a motion database of format version " + version + ", this is version " +
-                          std::to_string(kDatabaseFormatVersion),
-                      "build it again with 'sparse-mocap database build'");
-  }
-
-  void check_checksums() const {
-    if (metadata_checksum(view_.metadata) != text(kMetadataChecksum))
-      refuse("its metadata does not match its checksum");
-    const json checksums = json::parse(text("checksums"));
-    for (const auto& tensor : view_.tensors)
-      if (checksum(tensor.bytes) != checksums.at(tensor.name).get<std::string>())
-        refuse("the array '" + tensor.name + "' does not match its checksum");
-  }
+  const std::string& text(const char* key) const { return container_.text(key); }
 
   void read_settings() {
     database_.rate_hz_ = json::parse(text("rate_hz")).get<double>();
@@ -90,7 +66,10 @@ class DatabaseReader {
 
   template <typename Scalar>
   void map_array(RowsView<Scalar>& rows, const char* name, ElementType type, std::size_t columns) {
-    const Tensor& tensor = view_.find(name, path_);
+    const Tensor& tensor = container_.tensor(name);
+    if (!container_.has_checksum(name))
+      refuse(std::string("the array '") + name + "' has no checksum");
+    own_arrays_.insert(name);
     if (tensor.type != type || tensor.shape.size() != 2 || tensor.shape[1] != columns)
       refuse(std::string("the array '") + name + "' has not " + std::to_string(columns) +
              " columns");
@@ -115,7 +94,7 @@ class DatabaseReader {
     map_array(database_.specific_force_pivot_, "specific_force_pivot", f32, sites);
     map_array(database_.specific_force_end_, "specific_force_end", f32, sites);
     map_array(database_.angular_velocity_, "angular_velocity", f32, sites);
-    map_array(database_.up_, "up", f32, sites);
+    map_array(database_.gravity_direction_, "up", f32, sites);
     map_array(database_.clip_index_, "clip_index", ElementType::i32, 1);
   }
 
@@ -181,7 +160,7 @@ class DatabaseReader {
   }
 
   void read_sources() {
-    if (!view_.metadata.contains("sources")) return;  // not in every database
+    if (!container_.metadata().contains("sources")) return;  // not in every database
     const json sources = json::parse(text("sources"));
     for (const auto& entry : sources.at("skeletons")) {
       SourceSkeleton skeleton;
@@ -202,19 +181,59 @@ class DatabaseReader {
     for (const FloatRows* rows :
          {&database_.angles_, &database_.positions_, &database_.root_motion_, &database_.contacts_,
           &database_.specific_force_pivot_, &database_.specific_force_end_,
-          &database_.angular_velocity_, &database_.up_})
+          &database_.angular_velocity_, &database_.gravity_direction_})
       if (!rows->allFinite()) refuse("a value is not a number");
-    const FloatRows& up = database_.up_;
-    for (Eigen::Index at = 0; at < up.cols(); at += 3)
-      if (((up.middleCols(at, 3).rowwise().norm().array() - 1.0F).abs() > 1e-3F).any())
+    const FloatRows& directions = database_.gravity_direction_;
+    for (Eigen::Index at = 0; at < directions.cols(); at += 3)
+      if (((directions.middleCols(at, 3).rowwise().norm().array() - 1.0F).abs() > 1e-3F).any())
         refuse("a direction has not unit length");
   }
 
-  std::filesystem::path path_;
-  SafetensorsView view_;
+  void read_further() {
+    static const std::set<std::string> own_keys{"rate_hz", "filter", "skeleton", "sites",
+                                                "clips",   "build",  "sources"};
+    SafetensorsView& further = database_.further_;
+    for (const auto& [key, value] : container_.metadata())
+      if (!own_keys.contains(key) && !container_keys().contains(key))
+        further.metadata.emplace(key, value);
+    for (const auto& tensor : container_.tensors())
+      if (!own_arrays_.contains(tensor.name)) further.tensors.push_back(tensor);
+    try {
+      database_.model_names_ = stored_methods(further.metadata);
+    } catch (const std::invalid_argument& error) {
+      refuse(error.what());
+    }
+    for (const auto& method : database_.model_names_)
+      for (const auto& tensor : further.tensors)
+        if (is_of_model(tensor, method) && !container_.has_checksum(tensor.name))
+          refuse("the array '" + tensor.name + "' has no checksum");
+  }
+
+  Container container_;
+  std::set<std::string> own_arrays_;
   std::size_t num_frames_ = 0;
   MotionDatabase database_;
 };
+
+Model MotionDatabase::model(const std::string& method) const {
+  require_model(method);
+  try {
+    Model model = stored_model(further_, method);
+    model.path = path_;
+    return model;
+  } catch (const std::invalid_argument& error) {
+    throw FormatError({path_}, "the model of '" + method + "' is not sound: " + error.what(),
+                      kModelFormat.remedy);
+  }
+}
+
+void MotionDatabase::require_model(const std::string& method) const {
+  if (std::find(model_names_.begin(), model_names_.end(), method) != model_names_.end()) return;
+  std::string names;
+  for (const auto& name : model_names_) names += (names.empty() ? "" : ", ") + name;
+  throw FormatError({path_}, "holds no model of '" + method + "'",
+                    names.empty() ? "it holds no models" : "it holds models of " + names);
+}
 
 std::shared_ptr<const MotionDatabase> MotionDatabase::from_bytes(
     std::shared_ptr<const Bytes> bytes, const std::filesystem::path& path) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -10,18 +9,14 @@
 
 #include "sparse_mocap/base/mapped_file.hpp"
 #include "sparse_mocap/database/clip.hpp"
+#include "sparse_mocap/database/rows_view.hpp"
+#include "sparse_mocap/database/safetensors.hpp"
 #include "sparse_mocap/motion/skeleton.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 
 namespace sparse_mocap {
 
-inline constexpr int kDatabaseFormatVersion = 1;
-
-// One row a frame, as it lies in the file.
-template <typename Scalar>
-using RowsView =
-    Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
-using FloatRows = RowsView<float>;
+struct Model;
 
 // Columns of root_motion.
 namespace root_motion_column {
@@ -61,8 +56,21 @@ class MotionDatabase {
   const FloatRows& specific_force_pivot() const { return specific_force_pivot_; }  // m/s^2
   const FloatRows& specific_force_end() const { return specific_force_end_; }      // m/s^2
   const FloatRows& angular_velocity() const { return angular_velocity_; }          // rad/s
-  const FloatRows& up() const { return up_; }
+  // Unit vectors against gravity (up), in the sensor's axes; the array "up" of the file.
+  const FloatRows& gravity_direction() const { return gravity_direction_; }
   int clip_index(int frame) const { return clip_index_(frame, 0); }
+
+  // What methods learned and keep here, sorted by the methods' names.
+  const std::vector<std::string>& model_names() const { return model_names_; }
+  // The model of a method. Throws FormatError when there is none or it is not sound.
+  Model model(const std::string& method) const;
+  // Throws FormatError when there is none.
+  void require_model(const std::string& method) const;
+
+  // What the file holds beside all this: models, and whatever other programs or later versions put
+  // there. Views of bytes().
+  const SafetensorsView& further() const { return further_; }
+  const std::shared_ptr<const Bytes>& bytes() const { return bytes_; }
 
  private:
   MotionDatabase() = default;
@@ -83,8 +91,10 @@ class MotionDatabase {
   FloatRows specific_force_pivot_{nullptr, 0, 0};
   FloatRows specific_force_end_{nullptr, 0, 0};
   FloatRows angular_velocity_{nullptr, 0, 0};
-  FloatRows up_{nullptr, 0, 0};
+  FloatRows gravity_direction_{nullptr, 0, 0};
   RowsView<std::int32_t> clip_index_{nullptr, 0, 0};
+  std::vector<std::string> model_names_;
+  SafetensorsView further_;
 };
 
 }  // namespace sparse_mocap

@@ -45,7 +45,7 @@ FeatureRows database_readings(const MotionDatabase& database,
     const auto column = static_cast<Eigen::Index>(3 * (at - names.begin()));
     auto read = readings.middleCols(static_cast<Eigen::Index>(3 * s), 3);
     if (sensors[s].quantity == Quantity::up) {
-      read = database.up().middleCols(column, 3);
+      read = database.gravity_direction().middleCols(column, 3);
       continue;
     }
     const auto place = static_cast<float>(sensors[s].place);

@@ -88,7 +88,7 @@ TEST_F(BuildDatabase, HoldsTheRowsOfTheMotionsThemselves) {
   near(database->specific_force_end(), expected.specific_force_end, 2e-2F);
   near(database->specific_force_pivot(), expected.specific_force_pivot, 2e-2F);
   near(database->angular_velocity(), expected.angular_velocity, 1e-3F);
-  near(database->up(), expected.up, 1e-4F);
+  near(database->gravity_direction(), expected.gravity_direction, 1e-4F);
 }
 
 TEST_F(BuildDatabase, AddsMirroredAndReversedCopies) {

@@ -74,7 +74,8 @@ class EditDatabase : public ::testing::Test {
            same(a.root_motion(), b.root_motion()) && same(a.contacts(), b.contacts()) &&
            same(a.specific_force_pivot(), b.specific_force_pivot()) &&
            same(a.specific_force_end(), b.specific_force_end()) &&
-           same(a.angular_velocity(), b.angular_velocity()) && same(a.up(), b.up());
+           same(a.angular_velocity(), b.angular_velocity()) &&
+           same(a.gravity_direction(), b.gravity_direction());
   }
   static std::vector<std::string> sources_of(const MotionDatabase& database) {
     std::vector<std::string> sources;

@@ -93,9 +93,10 @@ TEST(DatabaseRows, ReadingsAtRestAreGravityForEverySite) {
       for (const auto* force : {&rows.specific_force_pivot, &rows.specific_force_end})
         EXPECT_LT((force->row(t).segment<3>(at).transpose().cast<double>() - expected).norm(),
                   1e-4);
-      EXPECT_LT(
-          (9.81F * rows.up.row(t).segment<3>(at).transpose().cast<double>() - expected).norm(),
-          1e-4);
+      EXPECT_LT((9.81F * rows.gravity_direction.row(t).segment<3>(at).transpose().cast<double>() -
+                 expected)
+                    .norm(),
+                1e-4);
     }
   }
   EXPECT_EQ(rows.angular_velocity.cwiseAbs().maxCoeff(), 0.0F);
@@ -105,7 +106,8 @@ TEST(DatabaseRows, KeepTheDirectionUpOfUnitLength) {
   const DatabaseRows rows = database_rows(swaying_motion(template_skeleton(), 3, 200, 120.0), 25.0);
   for (std::size_t s = 0; s < all_sites().size(); ++s)
     for (int t = 0; t < rows.num_frames(); ++t)
-      EXPECT_NEAR(rows.up.row(t).segment<3>(static_cast<Eigen::Index>(3 * s)).norm(), 1.0F, 1e-5F);
+      EXPECT_NEAR(rows.gravity_direction.row(t).segment<3>(static_cast<Eigen::Index>(3 * s)).norm(),
+                  1.0F, 1e-5F);
 }
 
 }  // namespace

@@ -8,9 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/format_test_support.hpp"
+#include "sparse_mocap/base/checksum.hpp"
 #include "sparse_mocap/base/files.hpp"
+#include "sparse_mocap/database/container.hpp"
 #include "sparse_mocap/database/database_content.hpp"
-#include "sparse_mocap/database/safetensors.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
@@ -41,7 +42,7 @@ std::string complaint(std::vector<std::byte> file) {
 // The file with its arrays and metadata changed, checksums put right again.
 template <typename Change>
 std::vector<std::byte> forged(const std::vector<std::byte>& file, const Change& change) {
-  const SafetensorsView view = parse_safetensors(file, "f");
+  const SafetensorsView view = parse_safetensors(file);
   auto metadata = view.metadata;
   std::map<std::string, std::vector<std::byte>> arrays;
   for (const auto& t : view.tensors) arrays[t.name] = {t.bytes.begin(), t.bytes.end()};
@@ -98,7 +99,7 @@ TEST(MotionDatabase, GivesBackWhatWasWritten) {
     same(database->specific_force_pivot(), rows.specific_force_pivot);
     same(database->specific_force_end(), rows.specific_force_end);
     same(database->angular_velocity(), rows.angular_velocity);
-    same(database->up(), rows.up);
+    same(database->gravity_direction(), rows.gravity_direction);
     for (int n = clip.begin; n < clip.end; ++n)
       EXPECT_EQ(database->clip_index(n), static_cast<int>(c));
   }
@@ -152,7 +153,7 @@ TEST(MotionDatabase, NamesTheArrayThatIsDamaged) {
 TEST(MotionDatabase, RefusesAnotherVersionNamingBoth) {
   const auto file = forged(encode_database(small_content(3)),
                            [](Metadata& metadata, Arrays&) { metadata["format_version"] = "999"; });
-  EXPECT_TRUE(contains(complaint(file), "format version 999, this is version " +
+  EXPECT_TRUE(contains(complaint(file), "format version 999, and this program reads version " +
                                             std::to_string(kDatabaseFormatVersion)))
       << complaint(file);
 }

@@ -143,9 +143,9 @@ Violations check_database(const MotionDatabase& database) {
   check_rows("specific_force_pivot", database.specific_force_pivot(), site_columns);
   check_rows("specific_force_end", database.specific_force_end(), site_columns);
   check_rows("angular_velocity", database.angular_velocity(), site_columns);
-  check_rows("up", database.up(), site_columns);
-  for (Eigen::Index at = 0; at + 2 < database.up().cols(); at += 3) {
-    const Eigen::ArrayXf lengths = database.up().middleCols(at, 3).rowwise().norm();
+  check_rows("up", database.gravity_direction(), site_columns);
+  for (Eigen::Index at = 0; at + 2 < database.gravity_direction().cols(); at += 3) {
+    const Eigen::ArrayXf lengths = database.gravity_direction().middleCols(at, 3).rowwise().norm();
     checks.require(((lengths - 1.0F).abs() < 2e-3F).all(), "a direction has not unit length");
   }
   int frame = 0;
