@@ -5,8 +5,10 @@ Long calls release the GIL. ``progress(done, total, what)`` is called with the G
 the call by returning False (the call then raises Cancelled and leaves nothing behind).
 """
 
+from ._core_body import *
 from ._core_calibration import *
 from ._core_database import *
+from ._core_model import *
 from ._core_motion import *
 from ._core_reconstruction import *
 from ._core_sensors import *

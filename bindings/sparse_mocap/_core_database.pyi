@@ -7,6 +7,7 @@ from typing import TypedDict, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
+from ._core_model import Model
 from ._core_motion import Motion, Skeleton
 from ._core_types import Path, ProgressCallback
 
@@ -71,6 +72,12 @@ class MotionDatabase:
         """
     def clip_motion(self, index: int) -> Motion:
         """The clip as a motion on the standard skeleton, starting at the origin."""
+    model_names: list[str]
+    def model(self, method: str) -> Model:
+        """What a method learned and keeps here, see store_model. Raises FormatError."""
+    @property
+    def other_tensors(self) -> list[tuple[str, str, tuple[int, ...], int]]:
+        """Tensors that other programs put into the file: name, element type, shape, bytes."""
 
 def find_motion_files(sources: Sequence[Path], exclude: Sequence[str] = ()) -> list[Path]:
     """The motion files that the sources are or hold, without those excluded, sorted.

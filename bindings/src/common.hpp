@@ -21,11 +21,13 @@ namespace py = pybind11;
 // One function a file, each binds one concept.
 void bind_errors(py::module_& m);
 void bind_motion(py::module_& m);
+void bind_body(py::module_& m);
 void bind_humanoid(py::module_& m);
 void bind_sensors(py::module_& m);
 void bind_streams(py::module_& m);
 void bind_calibration(py::module_& m);
 void bind_timing(py::module_& m);
+void bind_model(py::module_& m);
 void bind_database(py::module_& m);
 void bind_database_import(py::module_& m);
 void bind_reconstruction(py::module_& m);

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <memory>
+
 #include "common.hpp"
+#include "sparse_mocap/database/model.hpp"
 #include "sparse_mocap/database/motion_database.hpp"
+#include "sparse_mocap/database/stored_models.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 
 namespace sparse_mocap::python {
@@ -16,7 +21,7 @@ const FloatRows& rows_named(const MotionDatabase& database, const std::string& n
   if (name == "specific_force_pivot") return database.specific_force_pivot();
   if (name == "specific_force_end") return database.specific_force_end();
   if (name == "angular_velocity") return database.angular_velocity();
-  if (name == "up") return database.up();
+  if (name == "up") return database.gravity_direction();
   throw py::key_error("a motion database has no array '" + name + "'");
 }
 
@@ -59,6 +64,22 @@ std::vector<std::pair<std::string, std::string>> pairs_of(const std::vector<Left
   std::vector<std::pair<std::string, std::string>> pairs;
   for (const auto& file : files) pairs.emplace_back(file.source, file.reason);
   return pairs;
+}
+
+// What is no model's and not the database's own: name, element type as safetensors calls it, shape,
+// size in bytes.
+py::list other_tensors(const MotionDatabase& database) {
+  const auto is_of_some_model = [&](const Tensor& tensor) {
+    const auto& names = database.model_names();
+    return std::any_of(names.begin(), names.end(),
+                       [&](const std::string& method) { return is_of_model(tensor, method); });
+  };
+  py::list rows;
+  for (const auto& tensor : database.further().tensors)
+    if (!is_of_some_model(tensor))
+      rows.append(py::make_tuple(tensor.name, name_of(tensor.type),
+                                 py::tuple(py::cast(tensor.shape)), tensor.bytes.size()));
+  return rows;
 }
 
 }  // namespace
@@ -114,7 +135,15 @@ void bind_database(py::module_& m) {
             return view_of(d, name);
           },
           py::arg("name"))
-      .def("clip_motion", &clip_motion, py::arg("index"));
+      .def("clip_motion", &clip_motion, py::arg("index"))
+      .def_property_readonly("model_names", &MotionDatabase::model_names)
+      .def(
+          "model",
+          [](const MotionDatabase& d, const std::string& method) {
+            return std::make_shared<Model>(d.model(method));
+          },
+          py::arg("method"))
+      .def_property_readonly("other_tensors", &other_tensors);
 }
 
 }  // namespace sparse_mocap::python

@@ -9,11 +9,13 @@ PYBIND11_MODULE(_core, m) {
   m.attr("GRAVITY_MPS2") = kGravity_mps2;
   python::bind_errors(m);
   python::bind_motion(m);
+  python::bind_body(m);
   python::bind_humanoid(m);
   python::bind_sensors(m);
   python::bind_streams(m);
   python::bind_calibration(m);
   python::bind_timing(m);
+  python::bind_model(m);
   python::bind_database(m);
   python::bind_database_import(m);
   python::bind_reconstruction(m);

@@ -11,13 +11,13 @@ from typing import Any
 
 import click
 
-from .. import Clip, MotionDatabase
+from .. import Clip, FormatError, MotionDatabase
 
 _ARRAYS = (
     "angles", "positions", "root_motion", "contacts", "specific_force_pivot", "specific_force_end",
     "angular_velocity", "up",
 )  # fmt: skip
-_MOST_NAMES, _MOST_FILES = 40, 10
+_MOST_NAMES, _MOST_FILES, _LONGEST_TEXT = 40, 10, 60
 
 
 def described(opened: MotionDatabase) -> dict[str, Any]:
@@ -50,9 +50,30 @@ def described(opened: MotionDatabase) -> dict[str, Any]:
         "warnings": _warnings(originals),
         "skipped": [{"source": source, "reason": why} for source, why in opened.skipped],
         "duplicates": [{"source": source, "reason": why} for source, why in opened.duplicates],
+        "models": [_model(opened, method) for method in opened.model_names],
+        "other_arrays": [_tensor(*info) for info in opened.other_tensors],
         "build": json.loads(opened.build_info),
         "clips": [_clip(clip) for clip in clips],
     }
+
+
+def _model(opened: MotionDatabase, method: str) -> dict[str, Any]:
+    try:
+        model = opened.model(method)
+    except FormatError as error:
+        return {"method": method, "problem": str(error)}
+    tensors = [_tensor(*info) for info in model.tensor_infos]
+    return {
+        "method": method,
+        "version": model.version,
+        "metadata": model.metadata,
+        "bytes": sum(tensor["bytes"] for tensor in tensors),
+        "tensors": tensors,
+    }
+
+
+def _tensor(name: str, kind: str, shape: tuple[int, ...], num_bytes: int) -> dict[str, Any]:
+    return {"name": name, "type": kind, "shape": list(shape), "bytes": num_bytes}
 
 
 def is_copy(clip: Clip) -> bool:
@@ -145,6 +166,10 @@ def show(told: Mapping[str, Any]) -> None:
         click.echo(
             f"warning  {warning['kind']}: {warning['count']} times in {warning['num_files']} files"
         )
+    for model in told["models"]:
+        click.echo(f"model    {_model_line(model)}")
+    if told["other_arrays"]:
+        click.echo(f"further  {_listed(list(map(_tensor_text, told['other_arrays'])))}")
     for kind in ("skipped", "duplicates"):
         files = told[kind]
         for file in files[:_MOST_FILES]:
@@ -159,6 +184,23 @@ def _skeleton_line(skeleton: Mapping[str, Any]) -> str:
         f"{skeleton['id']}, {skeleton['num_joints']} joints, {skeleton['num_files']} files,"
         f" unit scale {skeleton['unit_scale']:g}: {mapping}"
     )
+
+
+def _model_line(model: Mapping[str, Any]) -> str:
+    if "problem" in model:
+        return str(model["problem"])
+    tensors = _listed(list(map(_tensor_text, model["tensors"]))) or "no tensors"
+    texts = "".join(f"; {key}: {_shortened(text)}" for key, text in model["metadata"].items())
+    size = model["bytes"] / 1e6
+    return f"{model['method']}, version {model['version']}, {size:.1f} MB: {tensors}{texts}"
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= _LONGEST_TEXT else text[: _LONGEST_TEXT - 3] + "..."
+
+
+def _tensor_text(tensor: Mapping[str, Any]) -> str:
+    return f"{tensor['name']} {tensor['type']} {tensor['shape']}"
 
 
 def _counted(counts: Mapping[str, int]) -> str:

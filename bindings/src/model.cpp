@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/database/model.hpp"
+
+#include <array>
+#include <memory>
+#include <stdexcept>
+
+#include "common.hpp"
+#include "sparse_mocap/database/model_file.hpp"
+
+namespace sparse_mocap::python {
+namespace {
+
+namespace fs = std::filesystem;
+using Texts = std::map<std::string, std::string>;
+
+struct NumpyType {
+  ElementType type;
+  const char* name;  // NumPy's
+};
+
+constexpr std::array kNumpyTypes{
+    NumpyType{ElementType::boolean, "bool"}, NumpyType{ElementType::u8, "uint8"},
+    NumpyType{ElementType::i8, "int8"},      NumpyType{ElementType::u16, "uint16"},
+    NumpyType{ElementType::i16, "int16"},    NumpyType{ElementType::f16, "float16"},
+    NumpyType{ElementType::u32, "uint32"},   NumpyType{ElementType::i32, "int32"},
+    NumpyType{ElementType::f32, "float32"},  NumpyType{ElementType::u64, "uint64"},
+    NumpyType{ElementType::i64, "int64"},    NumpyType{ElementType::f64, "float64"},
+    NumpyType{ElementType::c64, "complex64"}};
+
+py::dtype dtype_of(const std::string& name, ElementType type) {
+  for (const auto& known : kNumpyTypes)
+    if (known.type == type) return py::dtype(known.name);
+  throw py::value_error("NumPy has no type for the elements " + std::string(name_of(type)) +
+                        " of the tensor '" + name + "'");
+}
+
+ElementType element_type_of(const std::string& name, const py::array& values) {
+  for (const auto& known : kNumpyTypes)
+    if (values.dtype().equal(py::dtype(known.name))) return known.type;
+  throw py::value_error("the tensor '" + name + "' has the type " +
+                        py::str(values.dtype()).cast<std::string>() +
+                        ", which a model cannot hold; convert it with astype");
+}
+
+ModelTensor tensor_from(const std::string& name, const py::handle& values) {
+  const auto array = py::array::ensure(values, py::array::c_style);
+  if (!array) throw py::error_already_set();
+  ModelTensor tensor{element_type_of(name, array), {}, {}};
+  for (py::ssize_t i = 0; i < array.ndim(); ++i)
+    tensor.shape.push_back(static_cast<std::size_t>(array.shape(i)));
+  const auto* begin = static_cast<const std::byte*>(array.data());
+  tensor.bytes.assign(begin, begin + array.nbytes());
+  return tensor;
+}
+
+std::shared_ptr<Model> make_model(const std::string& method,
+                                  const std::map<std::string, py::object>& tensors,
+                                  const Texts& metadata, int version) {
+  auto model = std::make_shared<Model>();
+  model->method = method;
+  model->version = version;
+  model->metadata = metadata;
+  for (const auto& [name, values] : tensors)
+    model->tensors.emplace(name, tensor_from(name, values));
+  check_model(*model);
+  return model;
+}
+
+// A read-only view that keeps the model alive.
+py::array view_of(const std::shared_ptr<Model>& model, const std::string& name) {
+  const auto at = model->tensors.find(name);
+  if (at == model->tensors.end())
+    throw py::key_error("the model of '" + model->method + "' has no tensor '" + name + "'");
+  const ModelTensor& tensor = at->second;
+  const std::vector<py::ssize_t> shape(tensor.shape.begin(), tensor.shape.end());
+  py::array view(dtype_of(name, tensor.type), shape, tensor.bytes.data(), py::cast(model));
+  view.attr("setflags")(py::arg("write") = false);
+  return view;
+}
+
+std::vector<std::string> names_of(const Model& model) {
+  std::vector<std::string> names;
+  for (const auto& [name, tensor] : model.tensors) names.push_back(name);
+  return names;
+}
+
+py::dict views_of(const std::shared_ptr<Model>& model) {
+  py::dict views;
+  for (const auto& name : names_of(*model)) views[py::str(name)] = view_of(model, name);
+  return views;
+}
+
+// Name, element type as safetensors calls it, shape, size in bytes.
+py::list described(const Model& model) {
+  py::list rows;
+  for (const auto& [name, tensor] : model.tensors)
+    rows.append(py::make_tuple(name, name_of(tensor.type), py::tuple(py::cast(tensor.shape)),
+                               tensor.bytes.size()));
+  return rows;
+}
+
+}  // namespace
+
+void bind_model(py::module_& m) {
+  using release = py::call_guard<py::gil_scoped_release>;
+  py::class_<Model, std::shared_ptr<Model>>(m, "Model")
+      .def(py::init(&make_model), py::arg("method"),
+           py::arg("tensors") = std::map<std::string, py::object>(), py::kw_only(),
+           py::arg("metadata") = Texts(), py::arg("version") = 1)
+      .def_readonly("method", &Model::method)
+      .def_readonly("version", &Model::version)
+      .def_readonly("metadata", &Model::metadata)
+      .def_property_readonly("path", [](const Model& model) { return model.path.string(); })
+      .def_property_readonly("tensors", &views_of)
+      .def_property_readonly("tensor_infos", &described)
+      .def("tensor", &view_of, py::arg("name"));
+  m.def(
+      "read_model", [](const fs::path& path) { return std::make_shared<Model>(read_model(path)); },
+      py::arg("path"), release());
+  m.def("write_model", &write_model, py::arg("path"), py::arg("model"), release());
+  m.def("store_model", &store_model, py::arg("database"), py::arg("model"), release());
+  m.def("remove_model", &remove_model, py::arg("database"), py::arg("method"), release());
+}
+
+}  // namespace sparse_mocap::python
