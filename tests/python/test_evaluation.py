@@ -142,6 +142,7 @@ def cli_once() -> Cli:
 
 def test_every_method_is_tested_on_every_clip(found: dict) -> None:
     methods = ["default", "default, offline", "paper", "paper, offline", *BASELINES]
+    assert (found["format"], found["format_version"]) == ("sparse_mocap_evaluation", 1)
     assert list(found["methods"]) == methods
     assert len(found["tests"]) == 2 * 4
     for test in found["tests"]:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The raw log: every byte that arrived and when, on disk before anything else is done with it.
 
-A file of records behind the 8 bytes ``SMRAWLG1``. All numbers are little-endian::
+A file of records behind the 8 bytes ``SMRAWLG1``, whose last is the version. All numbers are
+little-endian::
 
     2 bytes  F5 4C          begins a record
     u8       kind           1 bytes of a link, 2 a datagram of a link, 3 an event
@@ -157,14 +158,26 @@ def read_log(folder: Path) -> Iterator[Record]:
                 raise
 
 
+def check_magic(path: Path, begin: bytes, magic: bytes, what: str) -> None:
+    """Raises ValueError unless a file begins with these bytes, the last of which is its version."""
+    if begin == magic:
+        return
+    if len(begin) == len(magic) and begin[:-1] == magic[:-1]:
+        version = begin[-1:].decode("ascii", "replace")
+        raise ValueError(
+            f"{path}: is a {what} of format version {version!r}, and this program reads version"
+            f" {magic[-1:].decode()!r}; use the Sparse Mocap that recorded it"
+        )
+    raise ValueError(f"{path}: is no {what} of a capture")
+
+
 def read_records(path: Path) -> Iterator[Record]:
     """Gives the records of a log, also of one that is being written or was torn.
 
     Raises ValueError when the file is no raw log, and OSError.
     """
     with open(path, "rb") as file:
-        if file.read(len(MAGIC)) != MAGIC:
-            raise ValueError(f"{path}: is no raw log of a capture")
+        check_magic(path, file.read(len(MAGIC)), MAGIC, "raw log")
         yield from _records(file)
 
 

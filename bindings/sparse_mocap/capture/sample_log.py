@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sample log: every decoded sample, in a file that any number of readers follow.
 
-Behind the 8 bytes ``SMSAMPL1`` stand records of SAMPLE, little-endian and all of one size, so that
-a sample's number is its place and a torn last record is cut by counting. After PER_FILE samples the
-log goes on in the next file (``samples.1.bin``, ...). A reader that was stalled goes on where it
-was; while nothing is recorded, though, the oldest files are given up.
+Behind the 8 bytes ``SMSAMPL1``, whose last is the version, stand records of SAMPLE, little-endian
+and all of one size, so that a sample's number is its place and a torn last record is cut by
+counting. After PER_FILE samples the log goes on in the next file (``samples.1.bin``, ...). A reader
+that was stalled goes on where it was; while nothing is recorded, though, the oldest files are given
+up.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .raw_log import check_magic
 
 MAGIC = b"SMSAMPL1"
 FILE_NAME = "samples.bin"
@@ -156,9 +159,11 @@ class SampleLogReader:
     def _open(self, number: int) -> None:
         path = log_path(self._folder, number)
         file = open(path, "rb", buffering=0)  # noqa: SIM115
-        if file.read(len(MAGIC)) != MAGIC:
+        try:
+            check_magic(path, file.read(len(MAGIC)), MAGIC, "sample log")
+        except ValueError:
             file.close()
-            raise ValueError(f"{path}: is no sample log of a capture")
+            raise
         if self._number >= 0:
             self._file.close()
         self._file, self._number = file, number

@@ -14,6 +14,8 @@ from .metrics import CM
 Floats = NDArray[np.float64]
 
 HISTOGRAM_BIN_CM = 0.5
+FORMAT_VERSION = 1
+"""Of the evaluation's JSON."""
 
 
 @dataclass(frozen=True)
@@ -108,6 +110,8 @@ class Evaluation:
     def as_dict(self) -> dict[str, Any]:
         """Returns everything as JSON has it."""
         return {
+            "format": "sparse_mocap_evaluation",
+            "format_version": FORMAT_VERSION,
             "scenario": self.scenario,
             "settings": self.settings,
             "truth_jerk_kmps3": float(np.mean([test.jerk_kmps3 for test in self.tests])),

@@ -14,6 +14,7 @@ namespace sparse_mocap {
 namespace {
 
 constexpr const char* kFormat = "sparse_mocap_mapping";
+constexpr int kFormatVersion = 1;
 constexpr std::size_t kMaxBytes = 1'000'000;
 
 nlohmann::json parse(const std::filesystem::path& path) {
@@ -25,6 +26,16 @@ nlohmann::json parse(const std::filesystem::path& path) {
   }
 }
 
+// Mappings written before versions were stated are of version 1.
+void check_version(const nlohmann::json& file, const std::filesystem::path& path) {
+  const nlohmann::json version = file.value("format_version", nlohmann::json(kFormatVersion));
+  if (version == kFormatVersion) return;
+  throw FormatError({path},
+                    "is a mapping of format version " + version.dump() +
+                        ", and this program reads version " + std::to_string(kFormatVersion),
+                    "update Sparse Mocap, or write it again with inspect --save-mapping");
+}
+
 }  // namespace
 
 JointNames read_mapping(const std::filesystem::path& path) {
@@ -32,9 +43,11 @@ JointNames read_mapping(const std::filesystem::path& path) {
   if (!file.is_object() || file.value("format", nlohmann::json()) != kFormat)
     throw FormatError({path}, "is not a mapping of joints",
                       std::string("it must be an object with \"format\": \"") + kFormat + "\"");
+  check_version(file, path);
   for (const auto& [key, value] : file.items())
-    if (key != "format" && key != "joints")
-      throw FormatError({path}, "unknown key '" + key + "'", "known: format, joints");
+    if (key != "format" && key != "format_version" && key != "joints")
+      throw FormatError({path}, "unknown key '" + key + "'",
+                        "known: format, format_version, joints");
   JointNames joints;
   try {
     joints = file.at("joints").get<JointNames>();
@@ -51,7 +64,8 @@ JointNames read_mapping(const std::filesystem::path& path) {
 }
 
 void write_mapping(const std::filesystem::path& path, const JointNames& joints) {
-  const nlohmann::ordered_json file{{"format", kFormat}, {"joints", joints}};
+  const nlohmann::ordered_json file{
+      {"format", kFormat}, {"format_version", kFormatVersion}, {"joints", joints}};
   write_file_atomically(path, file.dump(2) + "\n");
 }
 

@@ -8,7 +8,7 @@
 namespace sparse_mocap {
 
 // A mapping written by hand, or one that was found and saved:
-//   {"format": "sparse_mocap_mapping", "joints": {"lfemur": "LeftUpLeg", ...}}
+//   {"format": "sparse_mocap_mapping", "format_version": 1, "joints": {"lfemur": "LeftUpLeg", ...}}
 // Standard joints that it does not name are found as without it.
 // Throws FormatError, also where a standard joint's name is unknown (naming the nearest).
 JointNames read_mapping(const std::filesystem::path& path);

@@ -7,6 +7,7 @@
 
 #include "formats/format_test_support.hpp"
 #include "motion/synthetic_body.hpp"
+#include "sparse_mocap/base/files.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 #include "sparse_mocap/motion/humanoid_errors.hpp"
 #include "sparse_mocap/motion/humanoid_file.hpp"
@@ -247,6 +248,10 @@ TEST(MappingFile, SurvivesARoundTripAndSaysWhatIsWrong) {
   EXPECT_EQ(names.at("lfemur"), "LeftUpLeg");
   write_mapping(folder / "mapping.json", names);
   EXPECT_EQ(read_mapping(folder / "mapping.json"), names);
+  EXPECT_TRUE(contains(read_file(folder / "mapping.json", 1 << 20), "\"format_version\": 1,\n"));
+  const auto unversioned =
+      folder.write("old.json", R"({"format": "sparse_mocap_mapping", "joints": {"head": "Head"}})");
+  EXPECT_EQ(read_mapping(unversioned), (JointNames{{"head", "Head"}}));
   const auto error = [&](const std::string& text) {
     const auto path = folder.write("bad.json", text);
     return error_of([&] { read_mapping(path); });
@@ -256,6 +261,10 @@ TEST(MappingFile, SurvivesARoundTripAndSaysWhatIsWrong) {
   EXPECT_TRUE(contains(error("{}"), "is not a mapping"));
   EXPECT_TRUE(contains(error("[]"), "is not a mapping"));
   EXPECT_TRUE(contains(error(begin + R"("joint": {}})"), "unknown key 'joint'"));
+  EXPECT_TRUE(contains(error(begin + R"("format_version": 2, "joints": {}})"),
+                       "of format version 2, and this program reads version 1; update"));
+  EXPECT_TRUE(contains(error(begin + R"("format_version": "1", "joints": {}})"),
+                       "of format version \"1\", and this"));
   EXPECT_TRUE(contains(error(begin + R"("joints": {"lfemur": 3}})"), "must be an object"));
   EXPECT_TRUE(contains(error(begin + R"("joints": {"lfemor": "a"}})"), "nearest is 'lfemur'"));
   EXPECT_TRUE(

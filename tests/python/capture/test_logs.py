@@ -83,6 +83,16 @@ def test_another_file_is_no_log(tmp_path: Path) -> None:
         list(read_records(other))
 
 
+def test_a_log_of_another_version_says_so(tmp_path: Path) -> None:
+    newer = tmp_path / "raw.log"
+    newer.write_bytes(MAGIC[:-1] + b"2")
+    with pytest.raises(ValueError, match=r"raw log of format version '2', .* reads version '1'"):
+        list(read_records(newer))
+    (tmp_path / sample_log.FILE_NAME).write_bytes(sample_log.MAGIC[:-1] + b"0")
+    with pytest.raises(ValueError, match=r"sample log of format version '0', .* version '1'"):
+        SampleLogReader(tmp_path)
+
+
 def test_a_log_is_never_overwritten(tmp_path: Path) -> None:
     written(tmp_path, 3)
     with pytest.raises(FileExistsError):
