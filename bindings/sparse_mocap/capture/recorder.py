@@ -16,9 +16,9 @@ import numpy as np
 from .config import CaptureConfig
 from .decoder import Decoder
 from .errors import LogError
-from .kept_log import KeptLog
 from .link import Arrived, Link, State
 from .raw_log import Kind, Record, sent_by
+from .rolling_log import RollingLog
 from .sample_log import SampleLogWriter, Samples
 
 SILENT_S = 0.1
@@ -43,7 +43,7 @@ class Recorder:
 
     def __init__(self, folder: Path, config: CaptureConfig) -> None:
         self.folder, self.config = folder, config
-        self._raw = KeptLog(
+        self._raw = RollingLog(
             folder, {"event": "capture", "config": config.as_json(), "unix_s": time.time()}
         )
         self._log = SampleLogWriter(folder)

@@ -36,7 +36,7 @@ class _Begin:
     num_bytes: int = 0
 
 
-class KeptLog:
+class RollingLog:
     """Appends to the raw log of a capture and gives up what nobody needs. Raises OSError."""
 
     def __init__(self, folder: Path, about: dict[str, Any]) -> None:
