@@ -43,7 +43,7 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
     )
     source: StringProperty(
         name="Folder",
-        description="Folder with motion files (.bvh, or .amc with .asf), including subfolders",
+        description="Folder with motion files (.bvh, or .amc with .asf) and subfolders",
         subtype="DIR_PATH",
     )
     more_sources: CollectionProperty(type=SPARSEMOCAP_PG_source)
@@ -53,7 +53,7 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
     )
     mirror: BoolProperty(
         name="Mirror",
-        description="Also add a mirrored copy of every motion: twice the motions, no preferred side",
+        description="Also add a mirrored copy of every motion, for twice as many motions",
         default=True,
     )
     reverse: BoolProperty(name="Reverse", description="Also add a reversed copy of every motion")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Options that several commands share."""
+"""Options shared by several commands."""
 
 from __future__ import annotations
 
@@ -20,35 +20,37 @@ Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
 class Sites(click.ParamType):  # type: ignore[type-arg]
-    """A list of sensors' sites, separated by commas."""
+    """A list of sensor locations, separated by commas."""
 
     name = "SITE,..."
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[str, ...]:
-        """Returns the sites, all known and different."""
+        """Returns the locations, all known and different."""
         if isinstance(value, tuple):
             return value
         sites = tuple(site.strip() for site in str(value).split(","))
         known = site_names()
         for site in sites:
             if site not in known:
-                self.fail(f"{site!r} is no site; known are {', '.join(known)}", param, ctx)
+                self.fail(
+                    f"unknown sensor location {site!r}; choose from {', '.join(known)}", param, ctx
+                )
         if len(set(sites)) < len(sites):
-            self.fail("a site is named twice", param, ctx)
+            self.fail("a sensor location is given twice", param, ctx)
         return sites
 
 
 class Place(click.ParamType):  # type: ignore[type-arg]
-    """A site and where on its bone the sensor sits."""
+    """A sensor location and the sensor's position along the bone."""
 
     name = "SITE=PLACE"
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[str, float]:
-        """Returns the site and its place."""
+        """Returns the location and the position along the bone."""
         if isinstance(value, tuple):
             return value
         site, _, text = str(value).partition("=")
@@ -58,12 +60,12 @@ class Place(click.ParamType):  # type: ignore[type-arg]
         except ValueError:
             place = -1.0
         if not 0.0 <= place <= 1.0:
-            self.fail(f"{text!r} is no place from 0 (nearer the body) to 1", param, ctx)
+            self.fail(f"{text!r} is not a position from 0 (near the body) to 1", param, ctx)
         return site, place
 
 
 class Span(click.ParamType):  # type: ignore[type-arg]
-    """A stretch of a take."""
+    """A time span of a take."""
 
     name = "FROM:TO"
 
@@ -79,26 +81,26 @@ class Span(click.ParamType):  # type: ignore[type-arg]
         except ValueError:
             begin_s, end_s = 0.0, 0.0
         if not (begin_s < end_s and isfinite(begin_s) and isfinite(end_s)):
-            self.fail(f"{value!r} is no FROM:TO in seconds, as in 2.5:10", param, ctx)
+            self.fail(f"{value!r} is not FROM:TO in seconds, such as 2.5:10", param, ctx)
         return begin_s, end_s
 
 
 place_option: Decorator = click.option(
     "--place", "places", type=Place(), multiple=True,
-    help="Where along its bone a sensor sits, from 0 (elbow, knee) to 1 (wrist, ankle; the"
-    " default), as in left_ankle=0.4. May be repeated.",
+    help="Position of a sensor along its bone, from 0 (elbow, knee) to 1 (wrist, ankle; the"
+    " default), as in left_ankle=0.4. Can be repeated.",
 )  # fmt: skip
 
 frame_option: Decorator = click.option(
     "--frame", type=click.Choice(["heading", "root", "world"]), default="heading",
     show_default=True,
-    help="What positions are relative to: root position and heading, root position and"
-    " orientation, or the world.",
+    help="Frame of the positions: root position and heading removed, root position and full"
+    " orientation removed, or world.",
 )  # fmt: skip
 
 noise_option: Decorator = click.option(
     "--noise", type=click.Choice(list(noise_presets())), default="none", show_default=True,
-    help="How far the simulated sensors are from ideal ones.",
+    help="Quality of the simulated sensors: ideal, research or consumer grade.",
 )  # fmt: skip
 
 seed_option: Decorator = click.option(
@@ -107,16 +109,16 @@ seed_option: Decorator = click.option(
 
 method_option: Decorator = click.option(
     "--method", type=click.Choice(method_names()), default="tautges2011", show_default=True,
-    help="The published method that is used.",
+    help="The reconstruction method.",
 )  # fmt: skip
 
 
 def places_of(sites: Sequence[str], places: Sequence[tuple[str, float]]) -> list[float] | None:
-    """Returns a place for each site, None when none is named. Raises BadParameter."""
+    """Returns a position along the bone for each site; None if none is given."""
     named = dict(places)
     for site in named:
         if site not in sites:
-            raise click.BadParameter(f"no sensor is at {site}", param_hint="'--place'")
+            raise click.BadParameter(f"there is no sensor at {site}", param_hint="'--place'")
     return [named.get(site, 1.0) for site in sites] if named else None
 
 
@@ -126,13 +128,13 @@ def check_presets(method: str, presets: Sequence[str]) -> None:
     for preset in presets:
         if preset not in known:
             raise click.BadParameter(
-                f"{preset!r} is no preset of {method}; known are {', '.join(known)}",
+                f"unknown preset {preset!r} of {method}; choose from {', '.join(known)}",
                 param_hint="'--preset'",
             )
 
 
 def check_ending(path: Path, *endings: str) -> str:
-    """Returns the path's ending in lower case. Raises BadParameter when it is another."""
+    """Returns the path's extension in lower case. Raises BadParameter for another one."""
     ending = path.suffix.lower()
     if ending not in endings:
         raise click.BadParameter(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From the worlds of devices to the project's."""
+"""Converts rotations from the devices' world frames to the project's."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def from_matrices(matrices: Floats) -> Floats:
     m = matrices
     traces = np.trace(m, axis1=1, axis2=2)
     diagonal = np.diagonal(m, axis1=1, axis2=2)
-    # The outer product of the quaternion with itself, times four; its largest row is the best.
+    # Four times the outer product of the quaternion with itself; its largest row is most accurate.
     outer = np.empty((len(m), 4, 4))
     outer[:, 0, 0] = 1 + traces
     for i in range(3):

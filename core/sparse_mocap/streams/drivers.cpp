@@ -52,13 +52,13 @@ const Driver& find(std::string_view name) {
   for (const auto& driver : drivers())
     if (driver.name == name) return driver;
   const auto names = driver_names();
-  throw ConfigError("unknown driver " + in_quotes(name) + "; the nearest is '" +
-                    std::string(nearest_name(name, names)) + "'");
+  throw ConfigError("unknown driver " + in_quotes(name) + "; did you mean '" +
+                    std::string(nearest_name(name, names)) + "'?");
 }
 
 Options checked(const Driver& driver, const OptionMap& given) {
   Options options(driver.name, driver.options(), given);
-  driver.make_parser(options);  // looks at every value
+  driver.make_parser(options);  // checks every value
   return options;
 }
 

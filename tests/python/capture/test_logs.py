@@ -154,7 +154,7 @@ def test_who_was_stalled_too_long_goes_on_with_the_oldest_left(
     ):  # fmt: skip
         for begin in range(0, 100, 10):
             log.append(some_samples(begin, 10))
-            log.give_up()
+            log.remove_old()
         assert len(list(tmp_path.iterdir())) == 3
         assert late.read()["counter"].tolist() == list(range(64, 100))
         # The file that it has open is there for it still, where the system allows that.
