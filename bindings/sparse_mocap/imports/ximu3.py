@@ -34,7 +34,7 @@ def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
             records[_device_name(text, beside.get("command.json"))] = _record(text, at, beside)
     if len(records) > 1:
         notes.append(
-            "times are those of the devices' own clocks; they match only if the devices were synchronised"
+            "times are from the devices' own clocks, which match only if they were synchronised"
         )
     return records or None
 
