@@ -49,7 +49,7 @@ from .options import (
 )
 @click.option("--offline", is_flag=True, help="Runs each preset offline too.")
 @click.option("--gyroscopes", is_flag=True, help="Sensors have gyroscopes, which are used.")
-@click.option("--sites", type=Sites(), default=PAPER_SITES, help="Where sensors are worn.")
+@click.option("--sites", type=Sites(), default=PAPER_SITES, help="Sensor locations.")
 @noise_option
 @seed_option
 @click.option("--cache", type=FilePath, help="Keeps the database here for the next evaluation.")

@@ -53,7 +53,7 @@ from .options import (
 @click.option("--offline", is_flag=True, help="Looks at the whole take for every frame.")
 @click.option(
     "--gyroscopes/--no-gyroscopes", default=True, show_default=True,
-    help="Also uses which way is up for each sensor, where gx,gy,gz tell.",
+    help="Also use the gravity direction at each sensor, if the take has gx,gy,gz.",
 )  # fmt: skip
 @click.option("--positions", type=FilePath, help="Also writes the joints' positions (.csv).")
 @frame_option

@@ -52,8 +52,8 @@ def record(
     """Records sensors to a take, until Ctrl-C or for a given time.
 
     Recording is done by a separate process, so that nothing is lost if this command is killed: the
-    recording continues, and --attach connects to it again. Received data is kept in the folder
-    TAKE.capture next to the take until the take is written.
+    recording continues, and --attach connects to it again. Received data stays in the folder
+    TAKE.capture, next to the take, until the take is written.
     """
     check_ending(output, ".csv")
     folder = output.with_suffix(".capture").absolute()

@@ -113,7 +113,7 @@ void note_what_is_missing(std::span<const ObservedTurn> turns, const Mounting& m
     return turn.recording.has_gyroscope();
   });
   notes.push_back(
-      std::string("the movements do not determine its place along the bone (") +
+      std::string("the movements do not determine its position along the bone (") +
       (has_gyroscope ? "no point of it stayed still long enough" : "that takes a gyroscope") +
       "): taken as " + number("%.2f", calibration.place));
 }
