@@ -172,7 +172,7 @@ void AmcReader::read_frame() {
   const int most = max_frames_of(motion.skeleton.num_joints(), options_);
   if (motion.num_frames() >= most)
     scanner_.fail(frame_token, "there are more frames than the limit of " + std::to_string(most),
-                  "raise max_frames if that is intended");
+                  "raise the limit max_frames if that is intended");
   motion.rotations.resize(motion.rotations.size() + R_axes_.size(), Quat::Identity());
   motion.root_positions.emplace_back(skeleton_.root_position);
   for (auto& track : motion.offset_tracks) track.offset_parent.emplace_back(Vec3::Zero());

@@ -73,7 +73,7 @@ std::vector<int> depth_first_order(const TextScanner& scanner, const AsfSections
     if (depth >= max_depth && !children.empty())
       scanner.fail(sections.bones[static_cast<std::size_t>(children[0]) - 1].token,
                    "bones are nested deeper than " + std::to_string(max_depth),
-                   "raise max_depth if that is intended");
+                   "raise the limit max_depth if that is intended");
     for (auto child = children.rbegin(); child != children.rend(); ++child)
       pending.push_back({*child, depth + 1});
   }

@@ -207,7 +207,8 @@ std::vector<AcclaimChannel> SectionReader::read_channels(bool is_root) {
     const auto* known =
         std::ranges::find_if(kChannelNames, [&](const auto& c) { return is_word(token, c.name); });
     if (known == kChannelNames.end() || (is_root && known->channel == AcclaimChannel::length))
-      scanner_.fail(token, "unknown channel " + in_quotes(token), "known are rx ry rz tx ty tz l");
+      scanner_.fail(token, "unknown channel " + in_quotes(token),
+                    "use rx, ry, rz, tx, ty, tz or l");
     if (std::ranges::count(channels, known->channel) > 0)
       scanner_.fail(token, "channel " + in_quotes(token) + " is listed twice", kRemoveOne);
     channels.push_back(known->channel);
@@ -228,7 +229,7 @@ void SectionReader::read_bones() {
     expect_word("begin");
     if (static_cast<int>(sections_.bones.size()) + 1 >= options_.max_joints)
       scanner_.fail(begin, "there are more than " + std::to_string(options_.max_joints) + " bones",
-                    "raise max_joints if that is intended");
+                    "raise the limit max_joints if that is intended");
     read_bone(begin);
   }
 }

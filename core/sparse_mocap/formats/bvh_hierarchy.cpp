@@ -171,7 +171,7 @@ void HierarchyReader::read_end_site_item(std::string_view token) {
 void HierarchyReader::open_joint(std::string_view keyword) {
   if (static_cast<int>(joints_.size()) >= options_.max_joints)
     scanner_.fail(keyword, "there are more than " + std::to_string(options_.max_joints) + " joints",
-                  "raise max_joints if that is intended");
+                  "raise the limit max_joints if that is intended");
   BvhJoint opened;
   opened.name = read_name(keyword);
   opened.location = scanner_.location(keyword);
@@ -197,7 +197,7 @@ void HierarchyReader::open_end_site() {
 void HierarchyReader::push_block(std::string_view keyword, OpenBlock block) {
   if (static_cast<int>(blocks_.size()) >= options_.max_depth + (block.is_end_site ? 1 : 0))
     scanner_.fail(keyword, "joints are nested deeper than " + std::to_string(options_.max_depth),
-                  "raise max_depth if that is intended");
+                  "raise the limit max_depth if that is intended");
   blocks_.push_back(block);
 }
 
@@ -276,7 +276,7 @@ void HierarchyReader::read_channels(std::string_view keyword) {
     const auto* channel = find_channel(token);
     if (channel == nullptr)
       scanner_.fail(token, "unknown channel " + in_quotes(token),
-                    "known are Xposition to Zposition and Xrotation to Zrotation");
+                    "use Xposition to Zposition and Xrotation to Zrotation");
     const auto is_same = [&](const BvhChannel& other) {
       return other.is_rotation == channel->is_rotation && other.axis == channel->axis;
     };

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kShortestFrame_s = 1e-4;
 constexpr double kLongestFrame_s = 1.0;
-constexpr const char* kRaiseFrames = "raise max_frames if that is intended";
+constexpr const char* kRaiseFrames = "raise the limit max_frames if that is intended";
 constexpr const char* kCompareChannels = "compare the row with the joints' CHANNELS";
 // A joint whose position channels stay this close to its OFFSET does not move.
 constexpr double kSameOffset_m = 1e-7;

@@ -52,8 +52,8 @@ const Driver& find(std::string_view name) {
   for (const auto& driver : drivers())
     if (driver.name == name) return driver;
   const auto names = driver_names();
-  throw ConfigError("unknown driver " + in_quotes(name) + "; did you mean '" +
-                    std::string(nearest_name(name, names)) + "'?");
+  throw ConfigError("unknown driver " + in_quotes(name) + "; the nearest is '" +
+                    std::string(nearest_name(name, names)) + "'");
 }
 
 Options checked(const Driver& driver, const OptionMap& given) {

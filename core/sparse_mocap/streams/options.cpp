@@ -28,10 +28,10 @@ Options::Options(std::string_view driver, std::span<const OptionSpec> specs, con
   }
   for (const auto& [name, value] : given) {
     if (values_.find(name) == values_.end())
-      throw ConfigError("driver " + driver_ + " has no option " + in_quotes(name) +
-                        (names.empty()
-                             ? "; it has no options"
-                             : "; did you mean '" + std::string(nearest_name(name, names)) + "'?"));
+      throw ConfigError(
+          "driver " + driver_ + " has no option " + in_quotes(name) +
+          (names.empty() ? "; it has no options"
+                         : "; the nearest is '" + std::string(nearest_name(name, names)) + "'"));
     values_[name] = value;
   }
 }
