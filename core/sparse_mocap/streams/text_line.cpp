@@ -167,7 +167,7 @@ Profile::Profile(const Options& options)
       if (!known)
         options.fail("columns", "'header' or a list of these, of which '" +
                                     std::string(nearest_name(column, kNames)) +
-                                    "' is the closest to '" + column + "'");
+                                    "' is nearest to '" + column + "'");
       columns.push_back(*known);
     }
     if (!is_needed(columns)) options.fail("columns", "a list that has ax, ay and az once each");

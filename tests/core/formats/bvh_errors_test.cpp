@@ -204,8 +204,8 @@ TEST(ReadBvhRefuses, BadFrameCounts) {
 TEST(ReadBvhRefuses, BadFrameTimes) {
   for (const char* time : {"0", "-0.1", "1e-9", "1000"})
     EXPECT_EQ(error_with("Frame Time: 0.1", "Frame Time: "s + time),
-              "13: :13:1: the frame time must be from 0.0001 to 1 s; write the seconds from a "
-              "frame to the next");
+              "13: :13:1: the frame time must be from 0.0001 to 1 s; write the seconds between "
+              "two frames");
   EXPECT_EQ(error_with("Frame Time: 0.1", "Frame Time: nan"),
             "13: :13:13: expected 'Frame Time:' and a number, got \"nan\"; write a decimal number "
             "such as -1.5");

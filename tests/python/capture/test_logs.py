@@ -79,7 +79,7 @@ def test_records_longer_than_a_block_are_whole(tmp_path: Path) -> None:
 def test_another_file_is_no_log(tmp_path: Path) -> None:
     other = tmp_path / "other"
     other.write_bytes(b"time_s,sensor,ax,ay,az\n")
-    with pytest.raises(ValueError, match="is no raw log"):
+    with pytest.raises(ValueError, match="is not a raw log"):
         list(read_records(other))
 
 
