@@ -62,7 +62,7 @@ def until(is_so: Callable[[], Any], timeout_s: float = 10.0) -> None:
 @pytest.fixture(autouse=True)
 def impatience(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(link_module, "STALL_S", 0.3)
-    monkeypatch.setattr(link_module, "PUZZLED_S", 0.5)
+    monkeypatch.setattr(link_module, "UNDECODED_S", 0.5)
     monkeypatch.setattr(link_module, "REOPEN_S", 1.2)
 
 
