@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sparse Mocap in Blender: full-body motion from a few sensors and a motion database.
 
-``session`` knows no Blender, ``scene`` makes Blender's data, ``ops`` and ``ui`` are the animator's
-steps, one file a step. Importing this package alone needs no Blender either.
+``session`` works without Blender, ``scene`` creates Blender's data, ``ops`` and ``ui`` are the
+operators and panels, one file for each step. Importing this package alone does not need Blender.
 """
 
 import sys
@@ -19,7 +19,7 @@ bl_info = {
 
 
 def register() -> None:
-    """Show the panels and make the operators known."""
+    """Register the operators and panels."""
     from . import ops, scene, ui
 
     scene.register()
@@ -28,7 +28,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Stop what runs and leave nothing behind, not even the modules: an upgrade reads them anew."""
+    """Stop everything and unload the modules too, so that an upgrade loads its own."""
     from . import ops, scene, ui
 
     ui.unregister()

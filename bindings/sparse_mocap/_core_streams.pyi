@@ -31,7 +31,7 @@ class StreamParser:
         """After reset: the wire was idle for so long that what comes first begins a message."""
     def interrupt(self) -> None:
         """Bytes are missing before what comes next: the message that was begun is forgotten."""
-    def take_replies(self) -> list[bytes]:
+    def pop_replies(self) -> list[bytes]:
         """What the protocol wants answered."""
     @property
     def counters(self) -> dict[str, int]: ...

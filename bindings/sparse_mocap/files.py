@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that are there whole or not at all."""
+"""Atomic writing of files: complete or not at all."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from pathlib import Path
 
 @contextmanager
 def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Gives a path beside ``path`` to write to, which takes its place when the block ends well.
+    """Yields a temporary path to write to, which replaces ``path`` when the block succeeds.
 
-    When it does not, ``path`` is as it was and nothing is left behind.
+    If the block raises, ``path`` is unchanged and nothing is left behind.
     """
     target = Path(path)
     if target.is_dir():
@@ -23,13 +23,13 @@ def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
         handle, name = tempfile.mkstemp(
             dir=target.parent, prefix=f".{target.stem}.", suffix=target.suffix
         )
-    except OSError as error:  # names the file that was asked for, not the temporary one
+    except OSError as error:  # report the target, not the temporary file
         raise type(error)(error.errno, error.strerror, str(target)) from None
     os.close(handle)
     temporary = Path(name)
     try:
         yield temporary
-        _take_over(temporary, target)
+        _replace(temporary, target)
     except BaseException:
         with suppress(OSError):
             temporary.unlink()
@@ -37,12 +37,12 @@ def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
-    """Writes UTF-8 text atomically, with line ends as they are in ``text``."""
+    """Writes UTF-8 text atomically, keeping the line ends in ``text``."""
     with replaced(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="")
 
 
-def _take_over(temporary: Path, target: Path) -> None:
+def _replace(temporary: Path, target: Path) -> None:
     mode = target.stat().st_mode if target.exists() else 0o666 & ~_umask()
     temporary.chmod(mode & 0o777)
     with temporary.open("rb") as file:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a motion file holds, and how well the standard skeleton follows it."""
+"""The content of a motion file, and how well the standard skeleton reproduces it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .mappings import find_mapping
 
 @dataclass(frozen=True)
 class Inspection:
-    """One motion file. Where it is refused, ``refusal`` says why and the rest is what was seen."""
+    """One motion file. ``refusal`` is the reason if it cannot be used."""
 
     path: Path
     refusal: str | None = None
@@ -30,7 +30,7 @@ class Inspection:
 
     @property
     def found_by(self) -> str:
-        """How the body was found: by hand, by names or by shape."""
+        """How the joints were mapped: by hand, by names or by shape."""
         if self.mapping is None:
             return "-"
         if self.is_by_hand:
@@ -49,7 +49,7 @@ class Inspection:
         return max((worst for _, worst in self.limb_errors_deg.values()), default=math.nan)
 
     def described(self) -> dict[str, Any]:
-        """Everything but the motions, for JSON."""
+        """Everything except the motions, for JSON."""
         motion, mapping = self.motion, self.mapping
         return {
             "path": str(self.path),
@@ -69,9 +69,9 @@ class Inspection:
 
 
 def inspect_motion(path: Path, by_hand: Mapping[str, str] | None = None) -> Inspection:
-    """Reads a motion file and carries it over to the standard skeleton.
+    """Reads a motion file and transfers it to the standard skeleton.
 
-    A file that cannot be read, or is no person, is refused in the result. Raises OSError.
+    A file that cannot be read or mapped has a ``refusal``. Raises OSError.
     """
     try:
         motion, warnings = read_motion(path)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mappings by hand, remembered for each skeleton.
+"""Skeleton mappings made by hand, remembered for each skeleton.
 
-Who says once which joint of a rig is its left forearm need not say it again: the mapping is kept
-in the user's own folder under a name made of the skeleton's joints, and every later file with the
-same joints finds it there.
+A mapping is made only once for each skeleton: it is saved in the user's folder under a name derived
+from the skeleton's joints, and is used for every later file with the same joints.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ from ._core import (
 
 
 def mapping_folder() -> Path:
-    """Where mappings are remembered; the variable SPARSE_MOCAP_MAPPINGS names another folder."""
+    """The folder of remembered mappings; the variable SPARSE_MOCAP_MAPPINGS overrides it."""
     if named := os.environ.get("SPARSE_MOCAP_MAPPINGS"):
         return Path(named)
     if sys.platform == "win32":
@@ -38,7 +37,7 @@ def mapping_folder() -> Path:
 
 
 def remember_mapping(skeleton: Skeleton, joints: Mapping[str, str]) -> Path:
-    """Keeps a mapping by hand for every motion on such a skeleton; gives its file."""
+    """Remembers a mapping for every motion with this skeleton; returns its file."""
     path = Path(remembered_mapping_path(mapping_folder(), skeleton))
     path.parent.mkdir(parents=True, exist_ok=True)
     write_mapping(path, dict(joints))
@@ -46,7 +45,7 @@ def remember_mapping(skeleton: Skeleton, joints: Mapping[str, str]) -> Path:
 
 
 def forget_mapping(skeleton: Skeleton) -> bool:
-    """Removes what is remembered for a skeleton; False when nothing was."""
+    """Forgets the mapping of a skeleton; False when there was none."""
     path = Path(remembered_mapping_path(mapping_folder(), skeleton))
     known = path.exists()
     path.unlink(missing_ok=True)
@@ -56,24 +55,24 @@ def forget_mapping(skeleton: Skeleton) -> bool:
 def find_mapping(
     motion: Motion, by_hand: Mapping[str, str] | None = None
 ) -> tuple[HumanoidMapping, list[str]]:
-    """The body in a motion: as it is told, else as it is remembered, else as it looks.
+    """The mapping of a motion: by hand if given, else the remembered one, else detected.
 
-    Gives a line that says so when it was remembered. Raises MappingError.
+    Also returns a note if a remembered mapping is used. Raises MappingError.
     """
     if by_hand is not None:
         return map_humanoid(motion, dict(by_hand)), []
     remembered = remembered_mapping(mapping_folder(), motion.skeleton)
     path = remembered_mapping_path(mapping_folder(), motion.skeleton)
-    notes = [f"mapped by hand, as {path} remembers"] if remembered else []
+    notes = [f"using the mapping remembered in {path}"] if remembered else []
     return map_humanoid(motion, remembered), notes
 
 
 def to_standard(
     motion: Motion, skeleton: Skeleton | None = None, by_hand: Mapping[str, str] | None = None
 ) -> tuple[Motion, list[str]]:
-    """The motion on a standard skeleton (of its own proportions when None), and warnings.
+    """The motion on a standard skeleton (None: with its own proportions), and warnings.
 
-    The body is found as find_mapping does. Raises MappingError.
+    The joints are mapped as by find_mapping. Raises MappingError.
     """
     mapping, notes = find_mapping(motion, by_hand)
     standard, warnings = mapping.to_standard(motion, skeleton)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What real sensors add to ideal readings."""
+"""Errors of real sensors, added to ideal takes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class NoiseModel:
-    """How far sensors are from ideal; every sensor of a take draws its own errors."""
+    """The errors of sensors; drawn separately for every sensor of a take."""
 
     accelerometer_density: float = 0.0
     """m/s^2 per square root of Hz, white."""
@@ -31,9 +31,9 @@ class NoiseModel:
     scale_error: float = 0.0
     """Standard deviation of each axis' relative error of scale, 0.01 is 1 %."""
     misalignment_rad: float = 0.0
-    """By how much each sensor is turned on the body, about an axis of its own."""
+    """Rotation of each sensor on the body, about a random axis."""
     latency_s: float = 0.0
-    """How late the readings come."""
+    """Delay of the samples."""
 
 
 _MILLI_G = 1e-3 * GRAVITY_MPS2
@@ -67,7 +67,7 @@ def noise_presets() -> dict[str, NoiseModel]:
 
 
 def noisy(take: Take, model: NoiseModel, seed: int = 0) -> Take:
-    """Returns the take as such sensors would have recorded it; the same seed gives the same."""
+    """Returns the take as such sensors would have recorded it; reproducible by the seed."""
     if model == NoiseModel():
         return take
     streams = np.random.default_rng(seed).spawn(len(take.sensors))
@@ -85,7 +85,7 @@ def _noisy_record(
     axis /= np.linalg.norm(axis)
     R_true_sensor = _rotation(axis, model.misalignment_rad)
     rate_hz = 1.0 / float(np.median(np.diff(record.times_s))) if len(record.times_s) > 1 else 1.0
-    white = np.sqrt(0.5 * rate_hz)  # the standard deviation that a density of 1 gives a sample
+    white = np.sqrt(0.5 * rate_hz)  # standard deviation of a sample for a density of 1
     scale = 1.0 + model.scale_error * rng.normal(size=3)
     bias = model.accelerometer_bias * rng.normal(size=3)
     force = scale * (record.specific_force @ R_true_sensor) + bias

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of errors. Needs Matplotlib."""
+"""Plots of errors. Needs Matplotlib."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _COLOURS = ("#1b6ca8", "#d1603d", "#3d8b5f", "#8a5a9e", "#7a7a7a", "#c2a02c", "#
 
 
 def plot_evaluation(evaluation: Evaluation, folder: Path) -> list[Path]:
-    """Writes the evaluation's pictures into a folder and returns them."""
+    """Writes the evaluation's plots to a folder and returns their paths."""
     folder.mkdir(parents=True, exist_ok=True)
     prefix = f"scenario{evaluation.scenario}"
     return [
@@ -41,7 +41,7 @@ def plot_evaluation(evaluation: Evaluation, folder: Path) -> list[Path]:
 def plot_errors_over_time(
     curves: Mapping[str, tuple[Floats, Floats]], title: str, path: Path
 ) -> Path:
-    """Writes a picture of errors (cm) over times (s), with each curve's mean."""
+    """Writes a plot of errors (cm) over times (s), with each curve's mean."""
     figure, axes = _figure(9.0, 4.0)
     for colour, (name, (times, errors)) in zip(_COLOURS, curves.items(), strict=False):
         mean = float(errors.mean())

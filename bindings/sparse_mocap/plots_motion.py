@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of motions. Needs Matplotlib."""
+"""Plots of motions. Needs Matplotlib."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ Floats = NDArray[np.float64]
 
 _NUM_FRAMES = 6
 _TURN_RAD = math.radians(35.0)
-"""Figures are seen a little from their left, so that arms and legs do not hide each other."""
+"""View slightly from the figure's left, so that arms and legs do not hide each other."""
 
 
 def plot_inspections(inspections: Sequence[Inspection], path: Path) -> Path:
-    """Writes a sheet: a row for each mapped file, six frames, its skeleton beside the standard one.
+    """Writes a sheet: a row of six frames for each file, its skeleton next to the standard one.
 
-    Files that were refused have an empty row with the reason.
+    Files that were rejected have an empty row with the reason.
     """
     rows = len(inspections)
     figure = Figure(figsize=(2.6 * _NUM_FRAMES, 2.5 * rows), layout="constrained")
@@ -40,7 +40,7 @@ def plot_inspections(inspections: Sequence[Inspection], path: Path) -> Path:
         for cell in cells:
             cell.set_axis_off()
         if inspection.standard is None:
-            cells[0].text(0.0, 0.5, f"refused: {inspection.refusal}", fontsize=8)
+            cells[0].text(0.0, 0.5, f"rejected: {inspection.refusal}", fontsize=8)
         else:
             _draw_row(inspection, cells)
     with replaced(path) as temporary:
@@ -71,7 +71,7 @@ def _spread(num_frames: int) -> NDArray[np.int64]:
 
 
 def _bones(motion: Motion) -> Floats:
-    """(2J, 2, 3): begin and end of each joint's bone, and of the way to it from its parent."""
+    """(2J, 2, 3): ends of each joint's bone, and of the link from its parent's bone."""
     pivots, ends = motion.pivot_positions()[0], motion.joint_positions("world")[0]
     parents = np.maximum(motion.skeleton.parents, 0)
     return np.concatenate([np.stack([pivots, ends], 1), np.stack([ends[parents], pivots], 1)])

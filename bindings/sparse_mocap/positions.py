@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Positions files: where each joint is, frame by frame, as a table that any program reads."""
+"""Positions files: a table of joint positions, one row for each frame."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is wrong with a table (a take or positions file), and where."""
+"""Errors in tables (takes and positions files), with their line."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from . import FormatError
 
 
 class TableError(FormatError):
-    """A table is at fault; str() is one line: ``take.csv:12: what; what to do``."""
+    """A table has an error; str() is one line: ``take.csv:12: what; what to do``."""
 
     def __init__(self, path: str | os.PathLike[str], line: int, problem: str) -> None:
-        place = f"{os.fspath(path)}:{line}" if line else os.fspath(path)
-        super().__init__(f"{place}: {problem}")
+        location = f"{os.fspath(path)}:{line}" if line else os.fspath(path)
+        super().__init__(f"{location}: {problem}")
         self.path, self.line, self.column = os.fspath(path), line, 0
 
 
@@ -22,7 +22,7 @@ class TakeError(TableError):
 
 
 def read_lines(path: str | os.PathLike[str], error: type[TableError]) -> list[str]:
-    """Returns the lines of a UTF-8 text without their ends, whatever these are."""
+    """Returns the lines of a UTF-8 text, without line ends of any kind."""
     with open(path, "rb") as file:
         data = file.read()
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
@@ -33,6 +33,10 @@ def read_lines(path: str | os.PathLike[str], error: type[TableError]) -> list[st
         line = data.count(b"\n", 0, at.start) + 1
         raise error(path, line, "is not UTF-8 text; save it as UTF-8") from None
     if "\0" in text:
-        raise error(path, text.count("\n", 0, text.index("\0")) + 1, "holds a NUL; it is no text")
+        raise error(
+            path,
+            text.count("\n", 0, text.index("\0")) + 1,
+            "contains a NUL byte, so it is not text; save it as text",
+        )
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     return lines[:-1] if lines[-1] == "" else lines

@@ -170,9 +170,9 @@ void bind_parser(py::module_& m) {
            [](SharedParser& shared) {
              shared.with_parser([](auto& parser) { parser.interrupt(); });
            })
-      .def("take_replies",
+      .def("pop_replies",
            [](SharedParser& shared) {
-             return list_of(asked(shared, [](auto& parser) { return parser.take_replies(); }));
+             return list_of(asked(shared, [](auto& parser) { return parser.pop_replies(); }));
            })
       .def_property_readonly("counters", &counters_of)
       .def_property_readonly("sensor_names",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The animator's steps as operators, one file a step."""
+"""The operators, one file for each step."""
 
 import atexit
 
@@ -12,8 +12,8 @@ from ..session import job
 from ..session import live as live_session
 from ..session.calibrating import calibrations
 from ..session.database import databases
-from ..session.imported import glances
-from ..session.surroundings import surroundings
+from ..session.imported import file_summaries
+from ..session.port_scanner import port_scanner
 from ..session.take import takes
 from . import (
     calibrate,
@@ -42,7 +42,7 @@ CLASSES = (
 
 @persistent
 def _before_load(*_: object) -> None:
-    """Another file is about to be opened: what runs for this one ends."""
+    """Stop everything before another .blend file is opened."""
     job.cancel_current()
     stop_ticking()
     prompt.hide()
@@ -50,18 +50,18 @@ def _before_load(*_: object) -> None:
 
 
 def _end_all() -> None:
-    """No thread of ours is left when Python ends or the add-on goes."""
+    """Leave no thread running when Python ends or the add-on is disabled."""
     job.cancel_current()
     live_session.end()
-    surroundings.wait(1.0)
+    port_scanner.wait(1.0)
     databases.close()
     takes.close()
     calibrations.close()
-    glances.close()
+    file_summaries.close()
 
 
 def register() -> None:
-    """Make the operators known."""
+    """Register the operators."""
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.app.handlers.load_pre.append(_before_load)
@@ -69,7 +69,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Stop what runs and take the operators away."""
+    """Stop everything and unregister the operators."""
     stop_ticking()
     prompt.hide()
     _end_all()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Calibration: lead the performer, and use what the sensors read meanwhile."""
+"""Calibration: guide the performer through movements and calibrate from what was recorded."""
 
 from __future__ import annotations
 
@@ -18,30 +18,30 @@ from .live import connected
 
 
 class SPARSEMOCAP_OT_calibrate_sensors(JobOperator, Operator):
-    """Find how the sensors are strapped on."""
+    """Find how each sensor is oriented and scaled, from a few guided movements."""
 
     bl_idname = "sparse_mocap.calibrate_sensors"
     bl_label = "Calibrate"
     bl_description = (
-        "Find how the sensors are strapped on, while the performer stands still, bends the "
-        "elbows and squats as the viewport says"
+        "Find how each sensor sits on the body. The viewport shows the performer what to do: "
+        "stand still, bend the elbows, squat"
     )
     bl_options = {"REGISTER", "UNDO"}
 
     def invoke(self, context: Context, event: Event) -> set[str]:
-        """As every job, with what to do written large in the viewport."""
+        """Start the job and show the instructions in the viewport."""
         done = super().invoke(context, event)
         if "RUNNING_MODAL" in done:
             prompt.show()
         return done
 
     def prepare(self, context: Context) -> Job:
-        """Lead the performer."""
+        """Guide the performer."""
         height_m = settings_of(context.scene).height_m
         return calibrating_job(connected(), takes_folder(bpy.data.filepath), height_m)
 
     def apply(self, context: Context, result: Calibrated) -> Steps[str]:
-        """The calibration is used from now on, also by what is live."""
+        """Use the calibration from now on, in a running live preview too."""
         yield 0.0
         settings_of(context.scene).calibration = result.path
         for note in result.notes:
@@ -49,7 +49,7 @@ class SPARSEMOCAP_OT_calibrate_sensors(JobOperator, Operator):
         session = live.current()
         if session is not None:
             session.use_calibration(calibrations.get(result.path))
-        return f"Calibrated {len(result.calibration.sensors)} sensors: {result.path}"
+        return f"Calibrated {len(result.calibration.sensors)} sensors, saved as {result.path}"
 
     def _end(self, context: Context) -> None:
         super()._end(context)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The clips of the motion database: preview one, keep it."""
+"""The clips of the motion database: preview one, keep it in the scene."""
 
 import bpy
 from bpy.props import BoolProperty, IntProperty
@@ -14,13 +14,13 @@ from ..session.errors import InputError, one_line
 
 
 class _ClipOperator:
-    """Mix-in: does it, or says in one line why not."""
+    """Mix-in: calls do() and reports its message, or the error in one line."""
 
     def execute(self, context: Context) -> set[str]:
-        """Do it."""
+        """Call do() and report."""
         try:
             if compat.is_rendering():
-                raise InputError("A render is at work: wait for its end")
+                raise InputError("A render is running: wait until it has finished")
             message = self.do(context)
         except Exception as error:
             self.report({"ERROR"}, one_line(error))
@@ -30,20 +30,23 @@ class _ClipOperator:
 
 
 class SPARSEMOCAP_OT_preview_clip(_ClipOperator, Operator):
-    """Show a clip of the motion database on the preview armature."""
+    """Play a clip of the motion database on the preview armature."""
 
     bl_idname = "sparse_mocap.preview_clip"
     bl_label = "Preview"
-    bl_description = "Play the clip in the viewport, on an armature of its own"
+    bl_description = "Play the clip in the viewport on a separate preview armature"
     bl_options = {"REGISTER", "UNDO"}
 
     index: IntProperty(
-        name="Clip", description="-1: the one that is marked", default=-1, options={"SKIP_SAVE"}
+        name="Clip",
+        description="Number in the list; -1: the selected clip",
+        default=-1,
+        options={"SKIP_SAVE"},
     )
     play: BoolProperty(name="Play", default=True, options={"SKIP_SAVE"})
 
     def invoke(self, context: Context, event: Event) -> set[str]:
-        """Show it and let the timeline run."""
+        """Show the clip and start playback."""
         done = self.execute(context)
         if done == {"FINISHED"} and self.play and not bpy.app.background:
             context.scene.frame_set(first_frame(context.scene))
@@ -58,39 +61,43 @@ class SPARSEMOCAP_OT_preview_clip(_ClipOperator, Operator):
         index = clip_list(context).index if self.index < 0 else self.index
         rows = database.clips.rows
         if index >= len(rows):
-            raise InputError(f"The motion database has {len(rows)} clips, none of number {index}")
+            raise InputError(f"There is no clip {index}: the motion database has {len(rows)} clips")
         armature = show_clip(context, database.motions.clip_motion(index), rows[index].label)
         clip_list(context).index = index
-        return f'"{rows[index].label}" on "{armature.name}"'
+        return f'Previewing "{rows[index].label}" on "{armature.name}"'
 
 
 class SPARSEMOCAP_OT_fit_preview_range(_ClipOperator, Operator):
-    """Play just the frames of the previewed clip."""
+    """Play only the frames of the previewed clip."""
 
     bl_idname = "sparse_mocap.fit_preview_range"
     bl_label = "Loop Clip"
-    bl_description = "Play just the frames of the clip: sets the preview range, not the scene's"
+    bl_description = (
+        "Play only this clip in a loop. Sets the preview range, not the scene's frame range"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     def do(self, context: Context) -> str:
         """Set the preview range."""
         fit_range(context.scene)
         scene = context.scene
-        return f"Plays frames {scene.frame_preview_start} to {scene.frame_preview_end}"
+        return f"Playback loops frames {scene.frame_preview_start} to {scene.frame_preview_end}"
 
 
 class SPARSEMOCAP_OT_keep_preview(_ClipOperator, Operator):
-    """Make the previewed clip your own armature and action."""
+    """Keep the previewed clip in the scene as an armature and action."""
 
     bl_idname = "sparse_mocap.keep_preview"
     bl_label = "Keep"
-    bl_description = "Make the previewed clip your own armature and action; no preview changes them"
+    bl_description = (
+        "Keep this clip as an armature and action. The next preview uses a new armature"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     def do(self, context: Context) -> str:
-        """Name them and let go of them."""
+        """Rename armature and action, so that the next preview leaves them alone."""
         armature = keep(context)
-        return f'"{armature.animation_data.action.name}" is kept on "{armature.name}"'
+        return f'Kept "{armature.animation_data.action.name}" on "{armature.name}"'
 
 
 CLASSES = (

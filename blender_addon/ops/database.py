@@ -28,23 +28,23 @@ REPORT = "Motion Database Report"
 
 
 class SPARSEMOCAP_OT_open_database(Operator):
-    """Choose the motion database to draw poses from."""
+    """Open a motion database (.smdb)."""
 
     bl_idname = "sparse_mocap.open_database"
     bl_label = "Open Motion Database"
-    bl_description = "Choose the motion database to draw poses from"
+    bl_description = "Open a motion database (.smdb)"
     bl_options = {"REGISTER", "UNDO"}
 
     filepath: StringProperty(name="File", subtype="FILE_PATH", options=SKIP)
     filter_glob: StringProperty(default=f"*{SUFFIX}", options={"HIDDEN", "SKIP_SAVE"})
 
     def invoke(self, context: Context, event: Event) -> set[str]:
-        """Let the animator choose the file."""
+        """Open the file browser."""
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def execute(self, context: Context) -> set[str]:
-        """Open the file; keep its name if it is a database."""
+        """Open the file; remember its path if it is a database."""
         try:
             databases.get(bpy.path.abspath(self.filepath))
         except Exception as error:
@@ -55,11 +55,11 @@ class SPARSEMOCAP_OT_open_database(Operator):
 
 
 class SPARSEMOCAP_OT_choose_output(Operator):
-    """Choose where the new motion database is written."""
+    """Choose where to save the new motion database."""
 
     bl_idname = "sparse_mocap.choose_output"
     bl_label = "Save Motion Database As"
-    bl_description = "Choose where the new motion database is written"
+    bl_description = "Choose where to save the new motion database"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     filepath: StringProperty(name="File", subtype="FILE_PATH", options=SKIP)
@@ -67,14 +67,14 @@ class SPARSEMOCAP_OT_choose_output(Operator):
     check_existing: BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
 
     def invoke(self, context: Context, event: Event) -> set[str]:
-        """Let the animator choose the file."""
+        """Open the file browser."""
         settings = settings_of(context.scene)
         self.filepath = settings.output or default_output(bpy.path.abspath(settings.source))
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def execute(self, context: Context) -> set[str]:
-        """Keep the file's name if a file can be there."""
+        """Remember the path if a file can be written there."""
         try:
             path = checked_output(bpy.path.abspath(self.filepath))
         except Exception as error:
@@ -85,11 +85,11 @@ class SPARSEMOCAP_OT_choose_output(Operator):
 
 
 class SPARSEMOCAP_OT_build_database(JobOperator, Operator):
-    """Read all motion files of the folder into one motion database."""
+    """Build a motion database from motion files."""
 
     bl_idname = "sparse_mocap.build_database"
     bl_label = "Build Motion Database"
-    bl_description = "Read all motion files of the folder into one motion database"
+    bl_description = "Build a motion database from all motion files in the folder"
     bl_options = {"REGISTER", "UNDO"}
 
     source: StringProperty(
@@ -100,23 +100,23 @@ class SPARSEMOCAP_OT_build_database(JobOperator, Operator):
     )
     rate_hz: FloatProperty(name="Frame rate", default=25.0, options=SKIP)
     mirror: BoolProperty(
-        name="Mirror", description="Add every motion mirrored as well", options=SKIP
+        name="Mirror", description="Also add a mirrored copy of every motion", options=SKIP
     )
     reverse: BoolProperty(
-        name="Reverse", description="Add every motion backwards as well", options=SKIP
+        name="Reverse", description="Also add a reversed copy of every motion", options=SKIP
     )
     tempos: BoolProperty(name="Other tempos", default=True, options=SKIP)
-    strict: BoolProperty(name="Stop at bad files", options=SKIP)
+    strict: BoolProperty(name="Stop at the first error", options=SKIP)
     exclude: StringProperty(
-        name="Leave out", description="File names, separated by commas", options=SKIP
+        name="Exclude", description="File names to exclude, separated by commas", options=SKIP
     )
 
     def prepare(self, context: Context) -> Job:
-        """Build from the folder that is given, or from all that are set in the scene."""
+        """Build from the given folder, or from all folders and files in the scene's settings."""
         settings = settings_of(context.scene)
         more = [] if self.source else [item.path for item in settings.more_sources]
         names = ("source", "rate_hz", "mirror", "reverse", "tempos", "strict", "exclude")
-        self.take_from_panel(context, *names)
+        self.fill_from_scene(context, *names)
         if not self.filepath:
             self.filepath = settings.output
         choices = BuildChoices(
@@ -135,18 +135,18 @@ class SPARSEMOCAP_OT_build_database(JobOperator, Operator):
         """Use the new database."""
         yield 0.0
         settings_of(context.scene).database = result.path
-        skipped = f", {len(result.skipped)} left out" if result.skipped else ""
+        skipped = f", {len(result.skipped)} files skipped" if result.skipped else ""
         return (
             f"Built a database of {result.num_clips} clips from {result.num_files} files{skipped}"
         )
 
 
 class SPARSEMOCAP_OT_add_sources(Operator):
-    """Add folders or files of motions to those that the database is built from."""
+    """Add folders or motion files to build the database from."""
 
     bl_idname = "sparse_mocap.add_sources"
     bl_label = "Add Folders or Files"
-    bl_description = "Add folders or files of motions to those that the database is built from"
+    bl_description = "Add more folders or motion files to build the database from"
     bl_options = {"REGISTER", "UNDO"}
 
     directory: StringProperty(subtype="DIR_PATH", options=SKIP)
@@ -156,12 +156,12 @@ class SPARSEMOCAP_OT_add_sources(Operator):
     filter_folder: BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
 
     def invoke(self, context: Context, event: Event) -> set[str]:
-        """Let the animator mark them."""
+        """Open the file browser."""
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def execute(self, context: Context) -> set[str]:
-        """Add what is marked; where nothing is, the folder that is shown."""
+        """Add what is selected; without a selection, the folder that is shown."""
         names = [item.name for item in (*self.dirs, *self.files) if item.name]
         settings = settings_of(context.scene)
         known = {settings.source, *(item.path for item in settings.more_sources)}
@@ -178,43 +178,42 @@ class SPARSEMOCAP_OT_add_sources(Operator):
 
 
 class SPARSEMOCAP_OT_remove_source(Operator):
-    """Build the database without this folder or file."""
+    """Remove this folder or file from the list."""
 
     bl_idname = "sparse_mocap.remove_source"
     bl_label = "Remove"
-    bl_description = "Build the database without this folder or file"
+    bl_description = "Remove this folder or file from the list; it stays on disk"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     index: IntProperty(options=SKIP)
 
     def execute(self, context: Context) -> set[str]:
-        """Take it from the list; the file stays where it is."""
+        """Remove it from the list; the file stays on disk."""
         settings_of(context.scene).more_sources.remove(self.index)
         return {"FINISHED"}
 
 
 class SPARSEMOCAP_OT_show_build_report(Operator):
-    """Put all that was left out of the last build, and why, into a text."""
+    """Show in a text which files the last build skipped and why."""
 
     bl_idname = "sparse_mocap.show_build_report"
-    bl_label = "Report as Text"
+    bl_label = "Show Report"
     bl_description = (
-        "List all files that were left out, and all warnings, in the Text Editor; "
-        "they can be pasted elsewhere too"
+        "List all skipped files and warnings in the Text Editor, and copy them to the clipboard"
     )
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: Context) -> set[str]:
-        """Make the text, and copy it."""
+        """Write the text and copy it to the clipboard."""
         if not last_build:
-            self.report({"ERROR"}, "No motion database was built yet: build one first")
+            self.report({"ERROR"}, "There is no report yet: build a motion database first")
             return {"CANCELLED"}
         text = bpy.data.texts.get(REPORT) or bpy.data.texts.new(REPORT)
         text.clear()
         text.write(last_build[0].text())
         if not bpy.app.background:
             context.window_manager.clipboard = text.as_string()
-        self.report({"INFO"}, f'See the text "{text.name}" in the Text Editor; it is copied too')
+        self.report({"INFO"}, f'The report is in the text "{text.name}" and on the clipboard')
         return {"FINISHED"}
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""File > Import: motion files as they are, each onto an armature."""
+"""File > Import: motion files, each on an armature."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from bpy.types import Context, Event, Operator, OperatorFileListElement
 
 from ..scene.imported import import_steps
 from ..scene.mapping import show_mapping
-from ..session.imported import ACCLAIM, BVH, LoadedMotion, Reading, glances, import_job
+from ..session.imported import ACCLAIM, BVH, ImportOptions, LoadedMotion, file_summaries, import_job
 from ..session.job import Job
 from ..session.mapping import last_mapped
 from ..session.steps import Steps
@@ -21,24 +21,26 @@ from .job_operator import JobOperator
 FILES = {"HIDDEN", "SKIP_SAVE"}
 _MOST_WARNINGS = 5
 _DIALOG_PX = 340
-_GLANCE_S = 0.5
+_SUMMARY_S = 0.5
 
 
 class ImportOperator(JobOperator):
-    """Mix-in: asks for files and options, reads on a worker thread, makes armatures."""
+    """Mix-in: file browser and options, reading on a worker thread, then the armatures."""
 
     endings: tuple[str, ...] = ()
-    _asks = False
+    _is_dialog_open = False
 
     filepath: StringProperty(name="File", subtype="FILE_PATH", options=FILES)
     directory: StringProperty(subtype="DIR_PATH", options=FILES)
     files: CollectionProperty(type=OperatorFileListElement, options=FILES)
 
-    unit: EnumProperty(name="Unit", description="How long a unit of the file is", items=UNITS)
-    up_axis: EnumProperty(name="Up", description="The axis that points up in it", items=UP_AXES)
+    unit: EnumProperty(name="Unit", description="Length unit of the file", items=UNITS)
+    up_axis: EnumProperty(
+        name="Up", description="The axis that points up in the file", items=UP_AXES
+    )
     start_frame: FloatProperty(
         name="Start frame",
-        description="The frame on which the motion begins",
+        description="The scene frame on which the motion starts",
         default=1.0,
         precision=0,
         step=100,
@@ -46,42 +48,42 @@ class ImportOperator(JobOperator):
     keep_timing: BoolProperty(
         name="Keep the file's timing",
         description=(
-            "Keys stand where the scene's frame rate shows the file's times. "
-            "Otherwise each frame of the file becomes one of the scene, faster or slower"
+            "Place the keys at the file's times, whatever the scene's frame rate. "
+            "Off: one scene frame for each frame of the file, which may play faster or slower"
         ),
         default=True,
     )
     standard_skeleton: BoolProperty(
-        name="Onto the standard skeleton",
-        description="Put the motion onto the skeleton of 21 joints that the databases use",
+        name="Use the standard skeleton",
+        description="Transfer the motion to the 21-joint skeleton that motion databases use",
     )
 
     def invoke(self, context: Context, event: Event) -> set[str]:
-        """Let the animator choose the files, or only the options if they are given."""
+        """Open the file browser, or only the options dialog when files are given."""
         if bpy.app.background:
             return self.execute(context)
-        self._asks = True
+        self._is_dialog_open = True
         if self.paths():
-            glances.peek(self.paths()[0])
-            glances.wait(_GLANCE_S)  # a dialog is not drawn anew when the file is read
+            file_summaries.peek(self.paths()[0])
+            file_summaries.wait(_SUMMARY_S)  # a dialog is not redrawn once the file is read
             return context.window_manager.invoke_props_dialog(self, width=_DIALOG_PX)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def execute(self, context: Context) -> set[str]:
-        """On after the dialog; all at once for scripts and when the options are adjusted."""
-        if not self._asks:
+        """Continue after the dialog; blocking for scripts and when the options are adjusted."""
+        if not self._is_dialog_open:
             return super().execute(context)
-        self._asks = False
+        self._is_dialog_open = False
         return self.start(context)
 
     def draw(self, context: Context) -> None:
-        """The options, and what they make of the file."""
+        """The options, and the file's size with them."""
         draw_options(self, context)
 
     def _failed(self, error: Exception) -> set[str]:
         if last_mapped and last_mapped[0].problem:
-            show_mapping(bpy.context, last_mapped[0])  # to be mended there
+            show_mapping(bpy.context, last_mapped[0])  # to be corrected there
         return super()._failed(error)
 
     def paths(self) -> list[str]:
@@ -94,16 +96,16 @@ class ImportOperator(JobOperator):
 
     def prepare(self, context: Context) -> Job:
         """Read the files."""
-        reading = Reading(
+        options = ImportOptions(
             unit_m=unit_m(self.unit),
             up=self.up_axis.lower(),
             amc_rate_hz=getattr(self, "amc_rate_hz", 120.0),
             is_standard=self.standard_skeleton,
         )
-        return import_job(self.paths(), self.endings, reading)
+        return import_job(self.paths(), self.endings, options)
 
     def apply(self, context: Context, result: list[LoadedMotion]) -> Steps[str]:
-        """One armature a file."""
+        """One armature for each file."""
         made = yield from import_steps(
             context,
             result,
@@ -118,7 +120,7 @@ class ImportOperator(JobOperator):
         if more > 0:
             self.report({"WARNING"}, f"and {more} more warnings")
         if len(made) > 1:
-            return f"Imported {len(made)} files, each onto its armature"
+            return f"Imported {len(made)} files, each on its own armature"
         motion = result[0]
         joints = f"{len(motion.skeleton.parents)} joints"
         frames = f"{motion.num_frames} frames" if motion.num_frames else "rest pose"
@@ -126,11 +128,11 @@ class ImportOperator(JobOperator):
 
 
 class SPARSEMOCAP_OT_import_bvh(ImportOperator, Operator):
-    """Import motion capture in Biovision files."""
+    """Import BVH motion capture."""
 
     bl_idname = "sparse_mocap.import_bvh"
     bl_label = "Import Motion Capture BVH"
-    bl_description = "Import .bvh motion capture, each file onto an armature of its own skeleton"
+    bl_description = "Import .bvh motion capture, each file on an armature with the file's skeleton"
     bl_options = {"REGISTER", "UNDO"}
 
     endings = BVH
@@ -138,12 +140,12 @@ class SPARSEMOCAP_OT_import_bvh(ImportOperator, Operator):
 
 
 class SPARSEMOCAP_OT_import_acclaim(ImportOperator, Operator):
-    """Import motion capture in Acclaim files."""
+    """Import Acclaim motion capture."""
 
     bl_idname = "sparse_mocap.import_acclaim"
     bl_label = "Import Acclaim"
     bl_description = (
-        "Import .amc motion capture with the .asf skeleton found beside it, or an .asf alone"
+        "Import .amc motion capture with the .asf skeleton from the same folder, or an .asf alone"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -151,7 +153,7 @@ class SPARSEMOCAP_OT_import_acclaim(ImportOperator, Operator):
     filter_glob: StringProperty(default="*.asf;*.amc", options=FILES)
     amc_rate_hz: FloatProperty(
         name="Frame rate",
-        description="Frames a second of the .amc: the file does not say",
+        description="Frames per second of the .amc, which the file does not store",
         default=120.0,
         min=1.0,
         max=10_000.0,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators that do long work: modal with progress and Esc in the window, blocking for scripts."""
+"""Long-running operators: modal with progress and Esc in the window, blocking for scripts."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _SLICE_S = 0.05  # of work on the main thread, between which the window is drawn
 
 
 class JobOperator:
-    """Mix-in: prepare() says what to do, apply() puts the result into Blender.
+    """Mix-in: prepare() returns the job, apply() puts its result into Blender.
 
-    Between the two nothing of Blender's is held: an undo or another file may come meanwhile. While
-    apply() is at work, slice by slice, the window is drawn but takes no input besides Esc.
+    No reference to Blender's data is held between the two, since the user may undo or open another
+    file. While apply() runs, slice by slice, the window is redrawn but accepts no input except Esc.
     """
 
     _job: Job | None = None
@@ -32,21 +32,21 @@ class JobOperator:
     _timer: Any = None
 
     def prepare(self, context: Context) -> Job:
-        """The job. Raises InputError or what a file is at fault for."""
+        """The job. Raises InputError or the error of a file."""
         raise NotImplementedError
 
     def apply(self, context: Context, result: Any) -> Steps[str]:
-        """Change Blender's data, whole or not at all, and return one line that says so."""
+        """Change Blender's data, completely or not at all, and return one line to report."""
         raise NotImplementedError
 
-    def take_from_panel(self, context: Context, *names: str) -> None:
-        """Set those of the operator's properties that were not given to the scene's settings."""
+    def fill_from_scene(self, context: Context, *names: str) -> None:
+        """Set properties that were not passed to the operator from the scene's settings."""
         for name in names:
             if not self.properties.is_property_set(name):
                 setattr(self, name, getattr(settings_of(context.scene), name))
 
     def execute(self, context: Context) -> set[str]:
-        """Do it all now."""
+        """Do everything now, blocking."""
         manager = context.window_manager
         manager.progress_begin(0, 100)
         try:
@@ -60,13 +60,13 @@ class JobOperator:
             manager.progress_end()
 
     def invoke(self, context: Context, event: Event) -> set[str]:
-        """Do it on a worker thread while Blender stays usable."""
+        """Run the job on a worker thread; Blender stays usable."""
         if bpy.app.background:
-            return self.execute(context)  # nothing ticks there
+            return self.execute(context)  # there are no timers in the background
         return self.start(context)
 
     def start(self, context: Context) -> set[str]:
-        """Begin; modal() does the rest."""
+        """Start the job; modal() does the rest."""
         try:
             _refuse_while_rendering()
             self._job = self.prepare(context)
@@ -81,7 +81,7 @@ class JobOperator:
         return {"RUNNING_MODAL"}
 
     def modal(self, context: Context, event: Event) -> set[str]:
-        """Show the progress; when the work is done, put it into the scene."""
+        """Show the progress; when the job is done, put its result into the scene."""
         job = self._job
         if job is None:
             return {"CANCELLED"}
@@ -109,13 +109,13 @@ class JobOperator:
             return self._failed(error)
 
     def cancel(self, context: Context) -> None:
-        """Blender ends the operator: its window closes or another file is opened."""
+        """Called by Blender when its window closes or another file is opened."""
         if self._job is not None:
             self._job.cancel()
         self._end(context)
 
     def _begin_slices(self, context: Context, steps: Steps[str]) -> None:
-        """Tick without pause from now on."""
+        """Switch to a faster timer."""
         self._slices = Slices(steps)
         manager = context.window_manager
         manager.event_timer_remove(self._timer)
@@ -137,7 +137,7 @@ class JobOperator:
             slices.close()
         timer, self._timer = self._timer, None
         if timer is None:
-            return  # a dialog that was left
+            return  # the dialog was closed
         with suppress(ReferenceError, AttributeError):  # the window may be gone
             manager = context.window_manager
             manager.event_timer_remove(timer)
@@ -153,22 +153,24 @@ class JobOperator:
         if isinstance(error, Cancelled):
             self.report({"INFO"}, "Cancelled")
         elif isinstance(error, ReferenceError):
-            self.report({"ERROR"}, "The scene was changed meanwhile: nothing was done, try again")
+            self.report(
+                {"ERROR"}, "The scene changed in the meantime, so nothing was done: try again"
+            )
         else:
             self.report({"ERROR"}, one_line(error))
         return {"CANCELLED"}
 
 
 class SPARSEMOCAP_OT_cancel(Operator):
-    """Stop what is at work; nothing of it is kept."""
+    """Cancel and discard."""
 
     bl_idname = "sparse_mocap.cancel"
     bl_label = "Cancel"
-    bl_description = "Stop what is at work; nothing of it is kept"
+    bl_description = "Cancel and discard"
     bl_options = {"INTERNAL"}
 
     def execute(self, context: Context) -> set[str]:
-        """Ask the job to stop; its own operator tells the rest."""
+        """Ask the job to stop; its own operator reports the rest."""
         job = jobs.current()
         if job is None:
             return {"CANCELLED"}
@@ -178,7 +180,7 @@ class SPARSEMOCAP_OT_cancel(Operator):
 
 def _refuse_while_rendering() -> None:
     if compat.is_rendering():
-        raise InputError("A render is at work: wait for its end")
+        raise InputError("A render is running: wait until it has finished")
 
 
 CLASSES = (SPARSEMOCAP_OT_cancel,)

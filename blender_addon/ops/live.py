@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Real sensors: connect, move an armature live, record, and bake what was recorded."""
+"""Real sensors: connect, preview live on an armature, record, and bake the recording."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from ..session.errors import InputError
 from ..session.job import Job
 from ..session.live import LiveSession, answer_of, one_line_of
 from ..session.new_files import takes_folder
-from ..session.sensors import Kept
+from ..session.port_scanner import port_scanner
+from ..session.sensors import SavedTake
 from ..session.steps import Steps
-from ..session.surroundings import surroundings
 from .job_operator import JobOperator
 
 _ANSWER_S = 1.0
 
 
 def connected() -> LiveSession:
-    """The session that goes on. Raises InputError."""
+    """The running session. Raises InputError."""
     session = live.current()
     if session is None or not session.is_running:
         raise InputError("No sensors are connected: press Connect first")
@@ -36,7 +36,7 @@ def connected() -> LiveSession:
 
 
 class _NowOperator:
-    """Mix-in: act() does it at once, or raises what is then told in a line."""
+    """Mix-in: act() does the work at once; its message or error is reported in one line."""
 
     def act(self, context: Context) -> str:
         raise NotImplementedError
@@ -53,141 +53,141 @@ class _NowOperator:
 
 
 class SPARSEMOCAP_OT_find_sensors(_NowOperator, Operator):
-    """Look for serial ports and for captures that go on."""
+    """Refresh the list of ports and running captures."""
 
     bl_idname = "sparse_mocap.find_sensors"
-    bl_label = "Find Ports"
-    bl_description = "Look for serial ports and for captures that go on"
+    bl_label = "Refresh Ports"
+    bl_description = "Refresh the list of ports and running captures"
     bl_options = {"INTERNAL"}
 
     def act(self, context: Context) -> str:
-        """Look on a thread."""
-        surroundings.look()
+        """Scan on a thread."""
+        port_scanner.scan()
         return ""
 
 
 class SPARSEMOCAP_OT_connect_sensors(_NowOperator, Operator):
-    """Start to receive what the sensors at the port send."""
+    """Connect to the sensors at this port."""
 
     bl_idname = "sparse_mocap.connect_sensors"
     bl_label = "Connect"
-    bl_description = "Start to receive what the sensors at the port send"
+    bl_description = "Connect to the sensors at this port"
     bl_options = {"REGISTER"}
 
     def act(self, context: Context) -> str:
-        """Begin a session; the panel shows what comes of it."""
+        """Start a session; the panel shows its state."""
         settings = settings_of(context.scene)
         port = sensors.Port(
             settings.port, settings.driver, settings.baud, settings.driver_options, settings.sites
         )
-        live.begin(sensors.connecting(port, takes_folder(bpy.data.filepath)))
+        live.begin(sensors.new_session(port, takes_folder(bpy.data.filepath)))
         live_scene.ensure_ticking()
         return ""
 
 
 class SPARSEMOCAP_OT_attach_sensors(_NowOperator, Operator):
-    """Attach to a capture that goes on already."""
+    """Connect to a capture that is running in the background."""
 
     bl_idname = "sparse_mocap.attach_sensors"
-    bl_label = "Attach"
-    bl_description = "Attach to a capture that goes on already"
+    bl_label = "Reconnect"
+    bl_description = "Connect to these sensors again; they are still received in the background"
     bl_options = {"REGISTER"}
 
     pid: IntProperty(name="Process", options={"SKIP_SAVE"})
 
     def act(self, context: Context) -> str:
-        """Begin a session with it."""
-        for found in surroundings.view.captures:
+        """Start a session with it."""
+        for found in port_scanner.result.captures:
             if found.pid == self.pid:
-                live.begin(sensors.attaching(found.session))
+                live.begin(sensors.attach_session(found.session))
                 live_scene.ensure_ticking()
                 return ""
-        raise InputError("That capture has ended: look for ports again")
+        raise InputError("This capture has ended: refresh the ports and connect again")
 
 
 class SPARSEMOCAP_OT_disconnect_sensors(_NowOperator, Operator):
-    """Leave the sensors alone; a recording goes on without Blender."""
+    """Disconnect; a recording continues in the background."""
 
     bl_idname = "sparse_mocap.disconnect_sensors"
     bl_label = "Disconnect"
-    bl_description = "Leave the sensors alone; a recording goes on without Blender"
+    bl_description = "Disconnect. A recording continues in the background"
     bl_options = {"REGISTER"}
 
     def act(self, context: Context) -> str:
         """End the session."""
         live_scene.stop_ticking()
         live.end()
-        surroundings.look()
+        port_scanner.scan()
         return ""
 
 
 class SPARSEMOCAP_OT_go_live(JobOperator, Operator):
-    """Let an armature move as the sensors do; no keys are set."""
+    """Preview the motion live on an armature; no keys are set."""
 
     bl_idname = "sparse_mocap.go_live"
-    bl_label = "Live"
-    bl_description = "Let an armature move as the sensors do; no keys are set"
+    bl_label = "Live Preview"
+    bl_description = "Preview the motion live on an armature. No keys are set"
     bl_options = {"REGISTER", "UNDO"}
 
     def prepare(self, context: Context) -> Job:
         """Open the scene's database."""
         connected()
         settings = settings_of(context.scene)
-        return sensors.going_live_job(
+        return sensors.live_preview_job(
             bpy.path.abspath(settings.database), bpy.path.abspath(settings.calibration)
         )
 
     def apply(self, context: Context, result: tuple[Database, Any]) -> Steps[str]:
-        """Choose or make the armature, and let it follow."""
+        """Choose or create the armature and start the preview."""
         yield 0.0
         session = connected()
         database, calibration = result
         rig = live_scene.live_rig(context, database.motions.skeleton)
         session.go_live(database, settings_of(context.scene).preset, calibration)
         live_scene.follow(rig)
-        return f'"{rig.armature.name}" is live'
+        return f'Live preview on "{rig.armature.name}"'
 
 
 class SPARSEMOCAP_OT_leave_live(_NowOperator, Operator):
-    """Let the armature rest in the pose it has."""
+    """Stop live preview, keep this pose."""
 
     bl_idname = "sparse_mocap.leave_live"
-    bl_label = "Stop Live"
-    bl_description = "Let the armature rest in the pose it has"
+    bl_label = "Stop Live Preview"
+    bl_description = "Stop live preview, keep this pose"
     bl_options = {"REGISTER", "UNDO"}
 
     def act(self, context: Context) -> str:
-        """Make no more poses."""
+        """Stop the preview."""
         connected().leave_live()
         return ""
 
 
 class SPARSEMOCAP_OT_record_take(_NowOperator, Operator):
-    """Record what the sensors read."""
+    """Record the sensors."""
 
     bl_idname = "sparse_mocap.record_take"
     bl_label = "Record"
-    bl_description = "Record what the sensors read; goes on even if Blender ends"
+    bl_description = "Record the sensors. The recording continues even if Blender quits"
     bl_options = {"REGISTER"}
 
     def act(self, context: Context) -> str:
-        """Begin to record."""
+        """Start recording."""
         answer_of(connected().record(), _ANSWER_S)
         return "Recording"
 
 
 class SPARSEMOCAP_OT_stop_take(JobOperator, Operator):
-    """End the recording, keep it as a take and put it onto an armature as an action."""
+    """Stop recording, save the take and reconstruct it as an action on an armature."""
 
     bl_idname = "sparse_mocap.stop_take"
     bl_label = "Stop"
-    bl_description = "End the recording, keep it as a take and put it onto an armature as an action"
+    bl_description = "Stop recording, save the take and reconstruct it as an action on an armature"
     bl_options = {"REGISTER", "UNDO"}
 
     def prepare(self, context: Context) -> Job:
-        """Keep the take and reconstruct it."""
+        """Save the take and reconstruct it."""
         settings = settings_of(context.scene)
-        return sensors.stopping_job(
+        return sensors.save_take_job(
             connected(),
             bpy.path.abspath(settings.database),
             bpy.path.abspath(settings.calibration),
@@ -195,16 +195,16 @@ class SPARSEMOCAP_OT_stop_take(JobOperator, Operator):
             settings.preset,
         )
 
-    def apply(self, context: Context, result: Kept) -> Steps[str]:
-        """The take in the settings, and its action on the armature that was live, if one was."""
+    def apply(self, context: Context, result: SavedTake) -> Steps[str]:
+        """Select the take, and put its action on the armature of the live preview, if any."""
         settings_of(context.scene).take = result.path
         for warning in result.warnings:
             self.report({"WARNING"}, warning)
         if result.performance is None:
             self.report({"WARNING"}, f"Not reconstructed: {result.reason}")
             yield 1.0
-            return f"The take is kept in {result.path}"
-        armature = self._rested(context)
+            return f"Take saved as {result.path}"
+        armature = self._previewed(context)
         performed: Any = yield from perform_steps(
             context,
             result.performance,
@@ -212,10 +212,10 @@ class SPARSEMOCAP_OT_stop_take(JobOperator, Operator):
             reuse=armature is not None,
         )
         action = performed.animation_data.action
-        return f'"{action.name}" on "{performed.name}"; the take is kept in {result.path}'
+        return f'"{action.name}" on "{performed.name}"; take saved as {result.path}'
 
-    def _rested(self, context: Context) -> Any:
-        """The armature that was live, alone selected and live no more; None when none was."""
+    def _previewed(self, context: Context) -> Any:
+        """The armature of the live preview, which stops, alone selected; None without one."""
         session, armature = live.current(), live_scene.followed()
         if session is not None:
             session.leave_live()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which joint is which: remembered for a skeleton, saved to a file and read from one."""
+"""The skeleton mapping: remembered for a skeleton, saved to a file, loaded from one."""
 
 import bpy
 from bpy.props import BoolProperty, StringProperty
@@ -13,10 +13,10 @@ SKIP = {"HIDDEN", "SKIP_SAVE"}
 
 
 class _MappingOperator:
-    """Mix-in: does it, or says in one line why not."""
+    """Mix-in: calls do() and reports its message, or the error in one line."""
 
     def execute(self, context: Context) -> set[str]:
-        """Do it."""
+        """Call do() and report."""
         try:
             message = self.do(context)
         except Exception as error:
@@ -27,52 +27,52 @@ class _MappingOperator:
 
 
 class _FileOperator(_MappingOperator):
-    """Mix-in: asks for a file first."""
+    """Mix-in: opens the file browser first."""
 
     filepath: StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"})
     filter_glob: StringProperty(default=f"*{mapping.SUFFIX}", options=SKIP)
 
     def invoke(self, context: Context, event: Event) -> set[str]:
-        """Let the animator choose the file."""
+        """Open the file browser."""
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
 
 class SPARSEMOCAP_OT_remember_mapping(_MappingOperator, Operator):
-    """Use these joints for every file with this skeleton."""
+    """Use this mapping for every file with this skeleton."""
 
     bl_idname = "sparse_mocap.remember_mapping"
     bl_label = "Remember"
-    bl_description = "Use these joints for every file with this skeleton from now on"
+    bl_description = "Use this mapping for every file with this skeleton from now on"
     bl_options = {"REGISTER"}
 
     def do(self, context: Context) -> str:
-        """Keep the rows."""
+        """Remember the rows."""
         found = mapping.remember(shown_joints(context))
         show_mapping(context, found)
-        return f'Remembered for skeletons like that of "{found.name}"'
+        return f'Mapping remembered for files with the skeleton of "{found.name}"'
 
 
 class SPARSEMOCAP_OT_forget_mapping(_MappingOperator, Operator):
-    """Find the joints of this skeleton by their names and places again."""
+    """Forget the remembered mapping of this skeleton."""
 
     bl_idname = "sparse_mocap.forget_mapping"
     bl_label = "Forget"
-    bl_description = "Find the joints of this skeleton by their names and places again"
+    bl_description = "Forget this skeleton's mapping and detect its joints automatically again"
     bl_options = {"REGISTER"}
 
     def do(self, context: Context) -> str:
-        """Forget what was remembered."""
+        """Forget the mapping."""
         show_mapping(context, mapping.forget())
-        return "The joints are found by their names and places again"
+        return "Mapping forgotten; the joints are detected automatically again"
 
 
 class SPARSEMOCAP_OT_save_mapping(_FileOperator, Operator):
-    """Save these joints to a file."""
+    """Save this mapping to a file."""
 
     bl_idname = "sparse_mocap.save_mapping"
     bl_label = "Save Mapping"
-    bl_description = "Save these joints to a .json file"
+    bl_description = "Save this mapping to a .json file"
     bl_options = {"REGISTER"}
 
     check_existing: BoolProperty(default=True, options=SKIP)
@@ -84,17 +84,17 @@ class SPARSEMOCAP_OT_save_mapping(_FileOperator, Operator):
 
 
 class SPARSEMOCAP_OT_load_mapping(_FileOperator, Operator):
-    """Read the joints from a file."""
+    """Load a mapping from a file."""
 
     bl_idname = "sparse_mocap.load_mapping"
     bl_label = "Load Mapping"
-    bl_description = "Read the joints from a .json file"
+    bl_description = "Load a mapping from a .json file"
     bl_options = {"REGISTER"}
 
     def do(self, context: Context) -> str:
-        """Show what the file says; it is used once it is remembered."""
+        """Show the file's mapping; it takes effect with Remember."""
         show_joints(context, mapping.load(bpy.path.abspath(self.filepath)))
-        return "Loaded; Remember uses it"
+        return "Mapping loaded: press Remember to use it"
 
 
 CLASSES = (

@@ -32,7 +32,7 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
     def prepare(self, context: Context) -> Job:
         """Reconstruct the scene's take from the scene's database."""
         settings = settings_of(context.scene)
-        self.take_from_panel(context, "preset", "offline", "start_frame", "reuse_armature")
+        self.fill_from_scene(context, "preset", "offline", "start_frame", "reuse_armature")
         job = reconstruct_job(
             bpy.path.abspath(settings.database),
             bpy.path.abspath(settings.take),

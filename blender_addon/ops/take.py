@@ -11,30 +11,32 @@ from ..session.take import SUFFIX, takes
 
 
 class SPARSEMOCAP_OT_load_take(Operator):
-    """Choose the recorded take to reconstruct."""
+    """Load a recorded take (.csv)."""
 
     bl_idname = "sparse_mocap.load_take"
     bl_label = "Load Take"
-    bl_description = "Choose the recorded take to reconstruct"
+    bl_description = "Load a recorded take (.csv)"
     bl_options = {"REGISTER", "UNDO"}
 
     filepath: StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"})
     filter_glob: StringProperty(default=f"*{SUFFIX}", options={"HIDDEN", "SKIP_SAVE"})
 
     def invoke(self, context: Context, event: Event) -> set[str]:
-        """Let the animator choose the file."""
+        """Open the file browser."""
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def execute(self, context: Context) -> set[str]:
-        """Read the file; keep its name if it is a take."""
+        """Read the file; remember its path if it is a take."""
         try:
             take = takes.get(bpy.path.abspath(self.filepath))
         except Exception as error:
             self.report({"ERROR"}, one_line(error))
             return {"CANCELLED"}
         settings_of(context.scene).take = self.filepath
-        self.report({"INFO"}, f"{len(take.sensors)} sensors, {take.duration_s:.1f} s")
+        self.report(
+            {"INFO"}, f"Loaded a take of {len(take.sensors)} sensors, {take.duration_s:.1f} s"
+        )
         return {"FINISHED"}
 
 

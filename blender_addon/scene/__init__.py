@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Everything that makes or reads Blender's data, and every difference between its versions."""
+"""All access to Blender's data, and every difference between Blender versions."""
 
 
 def register() -> None:
-    """Give scenes their settings."""
+    """Register the settings."""
     from . import clips, mapping, settings
 
     settings.register()
@@ -12,7 +12,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take the settings away."""
+    """Unregister the settings."""
     from . import clips, mapping, settings
 
     mapping.unregister()

@@ -23,22 +23,22 @@ LOCATION, ROTATION = "location", "rotation_quaternion"
 def frames_of(
     scene: Scene, times_s: NDArray[np.float64], start_frame: float
 ) -> NDArray[np.float64]:
-    """(T,) the frames, mostly fractional, at which the scene's rate shows these times."""
+    """(T,) the scene's frames, usually fractional, at these times."""
     return start_frame + times_s * (scene.render.fps / scene.render.fps_base)
 
 
 def action_steps(
     name: str, rig: Rig, motion: Any, frames: NDArray[np.float64]
 ) -> Generator[float, None, Action]:
-    """A new action in which the rig moves as the motion does, made step by step.
+    """A new action with the motion as keys for the rig, made step by step.
 
     motion: a sparse_mocap.Motion or session.imported.LoadedMotion on the rig's skeleton; frames
-    (T,): where the keys stand. Yields the share that is done, after each curve. Raises ValueError
-    when the motion has numbers that are none; nothing is left behind then, nor when it is closed.
+    (T,): where the keys are placed. Yields the fraction done, after each curve. Raises ValueError
+    when the motion is not finite; nothing is left behind then, nor when the generator is closed.
     """
-    places, rotations = _places(motion), np.asarray(motion.rotations)
-    if not all(np.isfinite(values).all() for values in (rotations, *places.values())):
-        raise ValueError("The motion has positions or rotations that are not numbers")
+    positions, rotations = _positions(motion), np.asarray(motion.rotations)
+    if not all(np.isfinite(values).all() for values in (rotations, *positions.values())):
+        raise ValueError("The motion has positions or rotations that are not finite numbers")
     rest = [rest_orientation(rig.armature, bone) for bone in rig.bones]
     heads = [np.array(rig.armature.data.bones[bone].head_local) for bone in rig.bones]
     action = bpy.data.actions.new(name)
@@ -49,14 +49,14 @@ def action_steps(
             path = f'pose.bones["{bpy.utils.escape_identifier(bone)}"].'
             turned = continuous(bone_quaternions(rotations[:, joint], rest[joint]))
             tracks = {ROTATION: turned}
-            if joint in places:
-                moved = to_blender(places[joint]) * rig.units_per_metre
+            if joint in positions:
+                moved = to_blender(positions[joint]) * rig.units_per_metre
                 origin = heads[joint] if joint == 0 else 0.0
                 tracks = {LOCATION: (moved - origin) @ rest[joint], ROTATION: turned}
             yield joint / len(rig.bones)
             for what, track in tracks.items():
                 for index, values in enumerate(track.T):
-                    action.name  # noqa: B018 - raises ReferenceError when an undo took it
+                    action.name  # noqa: B018 - raises ReferenceError after an undo
                     _set_keys(new_curve(path + what, index, bone), frames, values)
                     yield (joint + (index + 1) / len(track.T)) / len(rig.bones)
     except BaseException:
@@ -67,12 +67,12 @@ def action_steps(
 
 
 def make_action(name: str, rig: Rig, motion: Any, frames: NDArray[np.float64]) -> Action:
-    """As action_steps, at once."""
+    """As action_steps, without steps."""
     return finished(action_steps(name, rig, motion, frames))
 
 
-def _places(motion: Any) -> dict[int, NDArray[np.float64]]:
-    """(T, 3) where the root is, and how far other joints are from their rest, by joint."""
+def _positions(motion: Any) -> dict[int, NDArray[np.float64]]:
+    """(T, 3) the root's position and other joints' distance from rest, by joint."""
     offsets = np.asarray(motion.skeleton.offsets)
     moved = {joint: np.asarray(track) - offsets[joint] for joint, track in motion.offset_tracks}
     return {**moved, 0: np.asarray(motion.root_positions)}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A skeleton of the core as an armature: one bone a joint, head at its pivot, tail at its end."""
+"""A skeleton of the core as an armature: one bone for each joint, from its pivot to its end."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .axes import Floats, rest_pivots_and_ends, to_blender
 MARK = "sparse_mocap"  # custom property of armatures that this add-on made
 NAME = "Sparse Mocap"
 
-# Of bones that stand for joints without length, on a figure of the usual height.
+# Lengths of bones for joints without length, on a figure of average height.
 _USUAL_HEIGHT_M = 1.7
 _ROOT_LENGTH_M = 0.1
 _LEAF_LENGTH_M = 0.05
@@ -47,7 +47,7 @@ class Rig:
 
     armature: Object
     bones: list[str]
-    """The joints' bones by name: the joint's own unless that is too long for Blender."""
+    """The joints' bones: named like the joints unless that name is too long for Blender."""
     units_per_metre: float
 
 
@@ -67,8 +67,8 @@ def new_armature(
 ) -> Rig:
     """A new armature of the skeleton in the scene, active and alone selected.
 
-    is_standard: whether takes may be put onto it later.
-    Raises InputError when the scene cannot take one; nothing is left behind then.
+    is_standard: whether takes may be put on it later.
+    Raises InputError when the scene cannot hold one; nothing is left behind then.
     """
     _leave_mode(context)
     data = bpy.data.armatures.new(name)
@@ -94,8 +94,8 @@ def new_armature(
 
 
 def remove_armature(armature: Object) -> None:
-    """Take the armature out of the file, if it is still there."""
-    with suppress(ReferenceError):  # an undo took it
+    """Remove the armature from the file, if it is still there."""
+    with suppress(ReferenceError):  # already removed by an undo
         data = armature.data
         bpy.data.objects.remove(armature)
         bpy.data.armatures.remove(data)
@@ -103,7 +103,7 @@ def remove_armature(armature: Object) -> None:
 
 @contextmanager
 def selection_back_on_error(context: Context) -> Iterator[None]:
-    """What was selected, active and in which mode is so again when the block raises."""
+    """Restore selection, active object and mode when the block raises."""
     layer = context.view_layer
     active, mode = layer.objects.active, context.mode
     names = [obj.name for obj in layer.objects if obj.select_get()]
@@ -112,7 +112,7 @@ def selection_back_on_error(context: Context) -> Iterator[None]:
         yield
     except BaseException:
         layer = context.view_layer
-        layer.update()  # what was removed is still in its list otherwise
+        layer.update()  # its list still has the removed objects otherwise
         for obj in layer.objects:
             obj.select_set(obj.name in names)
         layer.objects.active = layer.objects.get(active_name)
@@ -122,23 +122,23 @@ def selection_back_on_error(context: Context) -> Iterator[None]:
 
 
 def use_quaternions(armature: Object) -> None:
-    """Let the armature's bones turn by what the keys hold."""
+    """Set the armature's bones to rotate by quaternions, as the keys do."""
     for bone in armature.pose.bones:
         bone.rotation_mode = "QUATERNION"
 
 
 def units_per_metre(scene: Scene) -> float:
-    """How long a metre is in the scene."""
+    """Blender units per metre in the scene."""
     settings = scene.unit_settings
     return 1.0 if settings.system == "NONE" else 1.0 / settings.scale_length
 
 
 def rig_of(armature: Object, skeleton: Any) -> Rig:
-    """An armature that is there already. Raises InputError when it is not of that skeleton."""
+    """The rig of an existing armature. Raises InputError when it has another skeleton."""
     bones = rest_bones(skeleton)
     missing = [name for name in bones.names if name not in armature.data.bones]
     if missing:
-        raise InputError(f'"{armature.name}" has no bone {missing[0]}: reconstruct a new armature')
+        raise InputError(f'"{armature.name}" has no bone {missing[0]}: untick "Reuse armature"')
     rest = [armature.data.bones[name] for name in bones.names]
     points = np.array([bone.head_local for bone in rest] + [bone.tail_local for bone in rest])
     theirs = points - points[0]
@@ -147,7 +147,7 @@ def rig_of(armature: Object, skeleton: Any) -> Rig:
     if scale == 0.0 or np.abs(theirs / scale - ours).max() > _FIT_TOLERANCE_M:
         raise InputError(
             f'"{armature.name}" has other proportions than this motion database: '
-            "reconstruct a new armature"
+            'untick "Reuse armature"'
         )
     return Rig(armature, bones.names, scale)
 
@@ -158,7 +158,7 @@ def rest_orientation(armature: Object, bone: str) -> Floats:
 
 
 def is_ours(obj: Object | None) -> bool:
-    """Whether the object is an armature that this add-on made."""
+    """Whether the object is an armature made by this add-on."""
     return obj is not None and obj.type == "ARMATURE" and MARK in obj.data
 
 
@@ -171,7 +171,7 @@ def reusable_armature(context: Context) -> Object:
     if not candidates:
         raise InputError('There is no Sparse Mocap armature to reuse: untick "Reuse armature"')
     if len(candidates) > 1:
-        raise InputError("Select the Sparse Mocap armature that is to get the take")
+        raise InputError("There are several Sparse Mocap armatures: select the one for the take")
     return editable(candidates[0])
 
 
@@ -183,12 +183,14 @@ def select_only(context: Context, obj: Object) -> None:
 
 
 def editable(armature: Object) -> Object:
-    """The armature. Raises InputError when it may not be changed now."""
+    """The armature. Raises InputError when it cannot be changed now."""
     name = armature.name
     if armature.library is not None:
         raise InputError(f'"{name}" is linked from another file: make it local first')
     if armature.override_library is not None and armature.override_library.is_system_override:
-        raise InputError(f'"{name}" is an override that may not be edited: make it editable first')
+        raise InputError(
+            f'"{name}" is a library override that is not editable: make it editable first'
+        )
     animation = armature.animation_data
     if animation is not None and animation.use_tweak_mode:
         raise InputError(f'"{name}" is being tweaked in the NLA editor: leave tweak mode first')
@@ -205,7 +207,7 @@ def _leave_mode(context: Context) -> None:
 
 
 def _link(context: Context, obj: Object) -> None:
-    """Into the active collection, or the scene's own where that one is hidden or linked."""
+    """Link to the active collection, or the scene's when that one is hidden or linked."""
     collection = context.collection
     if collection is None or collection.library is not None:
         collection = context.scene.collection
@@ -214,13 +216,13 @@ def _link(context: Context, obj: Object) -> None:
         collection.objects.unlink(obj)
         context.scene.collection.objects.link(obj)
     if obj.name not in context.view_layer.objects:
-        raise InputError("The view layer shows no new objects: include its scene collection")
+        raise InputError("New objects are hidden in this view layer: include the scene collection")
 
 
 def _tail(joint: int, parents: list[int], pivots: Floats, ends: Floats, size: float) -> Floats:
-    """Where the joint's bone ends: its end, or what stands for it where a joint has no length.
+    """Where the joint's bone ends: at its end, or at a made-up one for a joint without length.
 
-    size: of the figure, 1 when it is as tall as people are.
+    size: of the figure, relative to average height.
     """
     shortest = _SHORTEST_BONE_M * min(size, 1.0)
     if np.linalg.norm(ends[joint] - pivots[joint]) >= shortest:

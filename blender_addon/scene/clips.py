@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The clip list of a window manager: one empty item a clip, filled once for an opened database."""
+"""The clip list of a window manager: one empty item for each clip of the open database."""
 
 from __future__ import annotations
 
@@ -21,31 +21,31 @@ from .settings import settings_of
 
 _SORTS = (
     ("name", "Name", "By name"),
-    ("length", "Length", "The shortest first"),
+    ("length", "Length", "Shortest first"),
     ("actor", "Actor", "By actor, then by name"),
 )
 
-_listed: list[ref[Database]] = []  # the database whose clips the items stand for
+_listed: list[ref[Database]] = []  # the database that the items belong to
 
 
 class SPARSEMOCAP_PG_clip(PropertyGroup):
-    """A clip: what is known of it is in the opened database, at the same index."""
+    """An empty item; its data is in the open database, at the same index."""
 
 
 class SPARSEMOCAP_PG_clip_list(PropertyGroup):
-    """The list as the animator has set it; it is no part of the file."""
+    """The state of the list; not saved in the .blend file."""
 
     items: CollectionProperty(type=SPARSEMOCAP_PG_clip)
     index: IntProperty(name="Clip", options={"SKIP_SAVE"})
     search: StringProperty(
         name="Search",
-        description="Words that are in the clip's name, actor or class",
+        description="Find clips by words in their name, actor or class",
         options={"TEXTEDIT_UPDATE", "SKIP_SAVE"},
     )
-    sort: EnumProperty(name="Sort", description="What the list is sorted by", items=_SORTS)
+    sort: EnumProperty(name="Sort", description="Sort the list by", items=_SORTS)
     shows_copies: BoolProperty(
         name="Copies",
-        description="List mirrored, reversed and faster or slower copies as well",
+        description="Also list the mirrored, reversed, faster and slower copies",
     )
 
 
@@ -55,19 +55,19 @@ def clip_list(context: Context) -> SPARSEMOCAP_PG_clip_list:
 
 
 def opened_database(context: Context) -> Database | None:
-    """The scene's database if it is opened."""
+    """The scene's database if it is open."""
     path = settings_of(context.scene).database
     return databases.peek(bpy.path.abspath(path)).value if path else None
 
 
 def is_listed(context: Context, database: Database) -> bool:
-    """Whether the items stand for that database's clips."""
+    """Whether the list has this database's clips."""
     is_same = bool(_listed) and _listed[0]() is database
     return is_same and len(clip_list(context).items) == len(database.clips.rows)
 
 
 def fill(context: Context) -> None:
-    """Let the items stand for the clips of the scene's database, if it is opened."""
+    """Fill the list with the clips of the scene's database, if it is open."""
     database = opened_database(context)
     if database is None or is_listed(context, database):
         return
@@ -82,14 +82,14 @@ def fill(context: Context) -> None:
 
 
 def register() -> None:
-    """Give the window manager its list."""
+    """Register the list."""
     bpy.utils.register_class(SPARSEMOCAP_PG_clip)
     bpy.utils.register_class(SPARSEMOCAP_PG_clip_list)
     WindowManager.sparse_mocap_clips = PointerProperty(type=SPARSEMOCAP_PG_clip_list)
 
 
 def unregister() -> None:
-    """Take the list away."""
+    """Unregister the list."""
     _listed.clear()
     del WindowManager.sparse_mocap_clips
     bpy.utils.unregister_class(SPARSEMOCAP_PG_clip_list)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What differs between Blender 3.4 and 5.x. Features are asked for, never version numbers."""
+"""Differences between Blender 3.4 and 5.x, by checking for features, not version numbers."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ import bpy
 from bpy.types import Action, Context, FCurve, Header, Object, UILayout
 from bpy_extras import anim_utils
 
-SLOT_NAME = "Sparse Mocap"  # one name, so that takes can be swapped on an armature
+SLOT_NAME = "Sparse Mocap"  # always the same, so that takes can be swapped on an armature
 
 HAS_PROGRESS_BAR = "progress" in UILayout.bl_rna.functions
-HAS_FILE_HANDLERS = hasattr(bpy.types, "FileHandler")  # what takes files dropped on a window
+HAS_FILE_HANDLERS = hasattr(bpy.types, "FileHandler")  # drag and drop of files
 
 _DRAGS = ("TRANSFORM_OT_", "SCULPT_OT_", "PAINT_OT_", "GPENCIL_OT_", "GREASE_PENCIL_OT_")
 
 NewCurve = Callable[[str, int, str], FCurve]
-"""Makes the curve of a data path and array index in the group of that name."""
+"""Creates the curve for a data path, array index and group name."""
 
 
 def new_curve_of(action: Action) -> NewCurve:
-    """What makes new curves in a new action for an object."""
+    """A function that creates curves in a new action for an object."""
     if not hasattr(action, "slots"):
         return lambda path, index, group: action.fcurves.new(path, index=index, action_group=group)
     slot = action.slots.new(id_type="OBJECT", name=SLOT_NAME)
@@ -49,7 +49,7 @@ def curves_of(action: Action) -> list[FCurve]:
 
 
 def assign_action(obj: Object, action: Action) -> None:
-    """Let the object play the action."""
+    """Assign the action to the object."""
     data = obj.animation_data or obj.animation_data_create()
     data.action = action
     if hasattr(action, "slots") and action.slots:
@@ -57,7 +57,7 @@ def assign_action(obj: Object, action: Action) -> None:
 
 
 def file_handler(name: str, label: str, operator: str, endings: str) -> type:
-    """A class that offers the operator when files with one of the endings are dropped on a view."""
+    """A file handler that calls the operator for files dropped on a 3D view."""
 
     def poll_drop(cls: type, context: Context) -> bool:
         return context.area is not None and context.area.type == "VIEW_3D"
@@ -76,18 +76,18 @@ def file_handler(name: str, label: str, operator: str, endings: str) -> type:
 
 
 def is_rendering() -> bool:
-    """Whether a render is at work: nothing may be changed then."""
+    """Whether a render is running, during which nothing may be changed."""
     return bpy.app.is_job_running("RENDER")
 
 
 def is_busy(context: Context) -> bool:
-    """Whether nothing may be changed just now: a render, or a stroke or drag of the user's."""
-    at_work: Any = getattr(context.window, "modal_operators", ())
-    return is_rendering() or any(tool.bl_idname.startswith(_DRAGS) for tool in at_work)
+    """Whether nothing may be changed now: during a render, or a stroke or drag by the user."""
+    modal: Any = getattr(context.window, "modal_operators", ())
+    return is_rendering() or any(tool.bl_idname.startswith(_DRAGS) for tool in modal)
 
 
 def show_status(context: Context, text: str, fraction: float) -> None:
-    """Say in the status bar of all windows what is at work, how far it is and how to stop it."""
+    """Show in the status bar what is running, its progress and how to cancel."""
 
     def draw(header: Header, _: Context) -> None:
         row = header.layout.row()
@@ -103,13 +103,13 @@ def show_status(context: Context, text: str, fraction: float) -> None:
 
 
 def clear_status(context: Context) -> None:
-    """Blender's own status bar again."""
+    """Restore Blender's own status bar."""
     if context.workspace is not None:
         context.workspace.status_text_set(None)
 
 
 def redraw_views(context: Context) -> None:
-    """Draw all 3D views' sidebars and the file browsers anew."""
+    """Redraw all 3D views and file browsers."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
             if area.type in ("VIEW_3D", "FILE_BROWSER"):

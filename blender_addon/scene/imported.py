@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Motion files put into the scene: each one action on one armature of its skeleton."""
+"""Imported motion files in the scene: an armature and an action for each."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def import_steps(
 ) -> Steps[list[Object]]:
     """The new armatures, the last one active and alone selected.
 
-    keeps_timing: keys stand where the scene's rate shows the file's times; else each of the file's
-    frames is one of the scene's. Raises InputError or ValueError; the scene is as it was then, and
-    when the steps are closed.
+    keeps_timing: place the keys at the file's times; otherwise each of the file's frames becomes
+    one scene frame. Raises InputError or ValueError; the scene is then unchanged, also when the
+    steps are closed early.
     """
     made: list[Object] = []
     actions: list[Action] = []
@@ -57,9 +57,9 @@ def import_steps(
 
 
 def remove_actions(actions: list[Action]) -> None:
-    """Take the actions out of the file, those that are still there."""
+    """Remove the actions that are still in the file."""
     for action in actions:
         try:
             bpy.data.actions.remove(action)
-        except ReferenceError:  # an undo took it
+        except ReferenceError:  # already removed by an undo
             continue

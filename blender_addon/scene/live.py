@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The newest live pose on an armature, without keys, while everything else stays as it is."""
+"""Shows the newest live pose on an armature, without keys and without other changes."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ from .axes import bone_quaternions, to_blender
 TICK_S = 0.02
 _PANEL_S = 0.25
 
-_target = ""  # the armature's name: references do not outlive an undo
+_target = ""  # the armature's name, since an undo invalidates references
 _bones: list[str] = []
 _units_per_metre = 1.0
 _next_panel_s = 0.0
 
 
 def live_rig(context: Context, skeleton: Any) -> Rig:
-    """The armature that is to move: the one that is there, where it can, else a new one.
+    """The armature for the live preview: the existing one if it fits, else a new one.
 
-    An action that it plays is taken off it and stays in the file. Raises InputError.
+    Its action, if any, is unassigned and stays in the file. Raises InputError.
     """
     rig = None
     try:
         armature = reusable_armature(context)
         if armature.animation_data is None or not armature.animation_data.nla_tracks:
             rig = rig_of(armature, skeleton)
-    except InputError:  # there is none, or none that fits
+    except InputError:  # there is none that fits
         rig = None
     if rig is None:
         rig = new_armature(context, skeleton)
@@ -58,7 +58,7 @@ def live_rig(context: Context, skeleton: Any) -> Rig:
 
 
 def follow(rig: Rig) -> None:
-    """Let the armature show the live poses."""
+    """Show the live poses on this armature."""
     global _target, _units_per_metre
     _target, _bones[:] = rig.armature.name, rig.bones
     _units_per_metre = rig.units_per_metre
@@ -66,19 +66,19 @@ def follow(rig: Rig) -> None:
 
 
 def followed() -> Object | None:
-    """The armature that shows the live poses, None when there is none any more."""
+    """The armature that shows the live poses; None when it is gone."""
     armature = bpy.data.objects.get(_target) if _target else None
     return armature if is_ours(armature) and armature.library is None else None
 
 
 def ensure_ticking() -> None:
-    """Let tick() be called while a session goes on; another file ends that."""
+    """Call tick() regularly while a session is running."""
     if not bpy.app.timers.is_registered(_tick_or_end):
         bpy.app.timers.register(_tick_or_end, first_interval=TICK_S)
 
 
 def stop_ticking() -> None:
-    """Leave no timer behind."""
+    """Remove the timer."""
     global _target
     _target = ""
     if bpy.app.timers.is_registered(_tick_or_end):
@@ -86,12 +86,12 @@ def stop_ticking() -> None:
 
 
 def tick() -> Pose | None:
-    """Put the newest pose onto the armature, and return it when there was one."""
+    """Apply the newest pose to the armature and return it; None when there is no new one."""
     session = live.current()
     if session is None or not session.is_live_wanted or compat.is_rendering():
         return None
     armature = followed()
-    if armature is None:  # deleted, or its making was undone
+    if armature is None:  # deleted, or undone
         session.leave_live()
         return None
     if armature.mode == "EDIT":
@@ -117,7 +117,7 @@ def _tick_or_end() -> float | None:
 def _show(armature: Object, pose: Pose) -> None:
     bones = armature.data.bones
     if any(name not in bones for name in _bones):
-        return  # the animator is rebuilding it
+        return  # its bones were changed
     for joint, name in enumerate(_bones):
         rest = np.array(bones[name].matrix_local.to_3x3())
         posed = armature.pose.bones[name]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The mapping of the last imported skeleton, as rows that can be edited; no part of the file."""
+"""The mapping of the last imported skeleton as editable rows; not saved in the .blend file."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from ..session.mapping import Mapped, last_mapped
 
 
 class SPARSEMOCAP_PG_mapped_joint(PropertyGroup):
-    """A standard joint (its name) and the skeleton's joint that carries it."""
+    """A joint of the standard skeleton (its name) and the file's joint mapped to it."""
 
     source: StringProperty(
-        name="Joint", description="The file's joint; empty: found by its name or its place"
+        name="Joint", description="Joint of the file. Empty: detected automatically"
     )
 
 
 class SPARSEMOCAP_PG_source_joint(PropertyGroup):
-    """A joint of the skeleton (its name), to choose from."""
+    """A joint of the file (its name), to choose from."""
 
 
 class SPARSEMOCAP_PG_mapping(PropertyGroup):
-    """All standard joints, and all of the skeleton's."""
+    """All joints of the standard skeleton, and all of the file's."""
 
     joints: CollectionProperty(type=SPARSEMOCAP_PG_mapped_joint)
     sources: CollectionProperty(type=SPARSEMOCAP_PG_source_joint)
@@ -39,7 +39,7 @@ def mapping_of(context: Context) -> SPARSEMOCAP_PG_mapping:
 
 
 def show_mapping(context: Context, found: Mapped) -> None:
-    """Let the rows show a skeleton's mapping; it is the one at hand from now on."""
+    """Show a skeleton's mapping in the rows; it becomes the last mapped one."""
     last_mapped[:] = [found]
     rows = mapping_of(context)
     rows.sources.clear()
@@ -49,7 +49,7 @@ def show_mapping(context: Context, found: Mapped) -> None:
 
 
 def show_joints(context: Context, joints: dict[str, str]) -> None:
-    """Let the rows show these joints."""
+    """Show these joints in the rows."""
     rows = mapping_of(context)
     rows.joints.clear()
     for name in core().standard_joint_names():
@@ -58,19 +58,19 @@ def show_joints(context: Context, joints: dict[str, str]) -> None:
 
 
 def shown_joints(context: Context) -> dict[str, str]:
-    """What the rows say."""
+    """The joints in the rows."""
     return {row.name: row.source for row in mapping_of(context).joints}
 
 
 def register() -> None:
-    """Give the window manager its rows."""
+    """Register the rows."""
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     WindowManager.sparse_mocap_mapping = PointerProperty(type=SPARSEMOCAP_PG_mapping)
 
 
 def unregister() -> None:
-    """Take them away."""
+    """Unregister the rows."""
     del WindowManager.sparse_mocap_mapping
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A reconstructed take put into the scene: one action on one armature."""
+"""A reconstructed take in the scene: an action on an armature."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _FACTS = "sparse_mocap"  # custom property of actions that this add-on made
 
 @dataclass(frozen=True)
 class Facts:
-    """What the panel tells of an action."""
+    """What the panel shows of an action."""
 
     duration_s: float
     misfit_mps2: float
@@ -38,9 +38,9 @@ class Facts:
 def perform_steps(
     context: Context, performance: Performance, start_frame: float, *, reuse: bool
 ) -> Steps[Object]:
-    """The armature that performs the take, active and alone selected; a new one unless reuse.
+    """The armature with the take's action, active and alone selected; a new one unless reuse.
 
-    Raises InputError or ValueError; the scene is as it was then, and when the steps are closed.
+    Raises InputError or ValueError; the scene is then unchanged, also when closed early.
     """
     motion = performance.motion
     times_s = np.arange(motion.num_frames) * motion.frame_time_s
@@ -66,7 +66,7 @@ def perform_steps(
 
 
 def facts_of(action: Action) -> Facts | None:
-    """What is known of the action, if this add-on made it."""
+    """The facts stored with the action, if this add-on made it."""
     values = action.get(_FACTS)
     if not hasattr(values, "to_dict"):
         return None

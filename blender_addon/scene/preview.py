@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A clip of the database shown on an armature of the add-on's own, until it is kept."""
+"""The preview of a database clip on a separate armature, until it is kept."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ def preview_armature(scene: Scene) -> Object | None:
 
 
 def show_clip(context: Context, motion: Any, name: str) -> Object:
-    """Let the preview armature perform the clip; one is made if there is none that fits.
+    """Play the clip on the preview armature, which is created unless a fitting one exists.
 
-    The clip begins at the scene's first frame. Raises InputError or ValueError; the scene is as it
-    was then.
+    The clip starts at the scene's first frame. Raises InputError or ValueError; the scene is then
+    unchanged.
     """
     old = preview_armature(context.scene)
     with selection_back_on_error(context):
@@ -46,7 +46,7 @@ def show_clip(context: Context, motion: Any, name: str) -> Object:
         if old is not None:
             try:
                 rig = rig_of(editable(old), motion.skeleton)
-            except InputError:  # of another database
+            except InputError:  # made for another database
                 rig = None
         if rig is None:
             rig, is_new = new_armature(context, motion.skeleton, NAME, is_standard=False), True
@@ -71,7 +71,7 @@ def show_clip(context: Context, motion: Any, name: str) -> Object:
 
 
 def keep(context: Context) -> Object:
-    """Make the preview the animator's own: an armature and an action named as the clip."""
+    """Keep the preview in the scene, armature and action named like the clip."""
     armature = preview_armature(context.scene)
     action = preview_action(armature)
     if armature is None or action is None:
@@ -87,25 +87,25 @@ def keep(context: Context) -> Object:
 
 
 def preview_action(armature: Object | None) -> Action | None:
-    """The action that shows a clip on the preview armature."""
+    """The action of the previewed clip."""
     data = armature.animation_data if armature is not None else None
     action = data.action if data is not None else None
     return action if action is not None and _MARK in action else None
 
 
 def clip_in_preview(scene: Scene) -> str:
-    """The name of the clip that is shown; empty when none is."""
+    """The name of the previewed clip; empty without one."""
     action = preview_action(preview_armature(scene))
     return "" if action is None else str(action[_MARK])
 
 
 def first_frame(scene: Scene) -> int:
-    """Where the scene's playback begins."""
+    """The first frame of the scene's playback."""
     return scene.frame_preview_start if scene.use_preview_range else scene.frame_start
 
 
 def fit_range(scene: Scene) -> None:
-    """Let playback be that of the clip: by the preview range, the scene's own range stays."""
+    """Set the preview range to the clip; the scene's frame range stays."""
     action = preview_action(preview_armature(scene))
     if action is None:
         raise InputError("There is no preview: preview a clip first")

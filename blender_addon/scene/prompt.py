@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the performer is to do, written so large in the viewports that it is read from afar."""
+"""Instructions for the performer, in large letters in the viewports."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ _handler: Any = None
 
 
 def show() -> None:
-    """Write what the calibration at work says, as long as it does."""
+    """Show the instructions while a calibration is running."""
     global _handler
     if _handler is None:
         _handler = bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL")
 
 
 def hide() -> None:
-    """Leave the viewports as they were."""
+    """Remove the instructions from the viewports."""
     global _handler
     if _handler is not None:
         bpy.types.SpaceView3D.draw_handler_remove(_handler, "WINDOW")
@@ -47,7 +47,7 @@ def _draw() -> None:
 
 
 def _free_view() -> tuple[float, float, float]:
-    """Left end, width and height of what the sidebar and the tools leave of the viewport, px."""
+    """Left edge, width and height of the viewport without sidebar and toolbar, px."""
     whole, left, right = bpy.context.region, 0.0, 0.0
     if bpy.context.preferences.system.use_region_overlap:
         for region in bpy.context.area.regions:
@@ -59,7 +59,7 @@ def _free_view() -> tuple[float, float, float]:
 
 
 def _line(text: str, size: float, left: float, width: float, y: float) -> None:
-    """Centred, and smaller where it would not fit."""
+    """Draw the text centred, smaller if it would not fit."""
     blf.size(_FONT, size)
     length = blf.dimensions(_FONT, text)[0]
     if length > 0.9 * width:

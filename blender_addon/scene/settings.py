@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the animator chose, kept in the scene."""
+"""The animator's settings, saved in the scene."""
 
 import bpy
 from bpy.props import (
@@ -13,7 +13,7 @@ from bpy.props import (
 )
 from bpy.types import Context, PropertyGroup, Scene
 
-from ..session.surroundings import surroundings
+from ..session.port_scanner import port_scanner
 
 PRESETS = (
     ("default", "Default", "Tuned for smooth, steady motion"),
@@ -22,96 +22,96 @@ PRESETS = (
 
 
 def _ports(_: PropertyGroup, __: Context, text: str) -> list[str]:
-    return [port.port for port in surroundings.view.ports if text.lower() in port.port.lower()]
+    return [port.port for port in port_scanner.result.ports if text.lower() in port.port.lower()]
 
 
 def _drivers(_: PropertyGroup, __: Context, text: str) -> list[str]:
-    return [driver for driver in surroundings.view.drivers if text.lower() in driver]
+    return [driver for driver in port_scanner.result.drivers if text.lower() in driver]
 
 
 class SPARSEMOCAP_PG_source(PropertyGroup):
-    """A further folder or file of motions."""
+    """Another folder or motion file."""
 
-    path: StringProperty(name="Path", description="A folder of motion files, or one file")
+    path: StringProperty(name="Path", description="A folder of motion files, or a single file")
 
 
 class SPARSEMOCAP_PG_settings(PropertyGroup):
     """The settings of one scene."""
 
     database: StringProperty(
-        name="Motion database", description="The motion database (.smdb) to draw poses from"
+        name="Motion database", description="The motion database (.smdb) to reconstruct from"
     )
     source: StringProperty(
         name="Folder",
-        description="Folder with motion files: .bvh, or .asf with .amc; searched recursively",
+        description="Folder with motion files (.bvh, or .amc with .asf) and subfolders",
         subtype="DIR_PATH",
     )
     more_sources: CollectionProperty(type=SPARSEMOCAP_PG_source)
     output: StringProperty(
         name="Save as",
-        description="The database file to write; empty: beside the folder, under its name",
+        description="The database file to write. Empty: next to the folder, with its name",
     )
     mirror: BoolProperty(
         name="Mirror",
-        description="Add every motion mirrored as well: twice the motions, and no preferred side",
+        description="Also add a mirrored copy of every motion, for twice as many motions",
         default=True,
     )
-    reverse: BoolProperty(name="Reverse", description="Add every motion played backwards as well")
+    reverse: BoolProperty(name="Reverse", description="Also add a reversed copy of every motion")
     tempos: BoolProperty(
         name="Other tempos",
-        description="Add every motion at 0.8 and 1.25 times its tempo, while the database is small",
+        description="Also add slower (0.8x) and faster (1.25x) copies while the database is small",
         default=True,
     )
     rate_hz: FloatProperty(
         name="Frame rate",
-        description="Frames a second of the database; takes are reconstructed at this rate",
+        description="Frames per second of the database; takes are reconstructed at this rate",
         default=25.0,
         min=5.0,
         max=120.0,
         precision=1,
     )
     strict: BoolProperty(
-        name="Stop at bad files",
-        description="Build nothing if a file cannot be used; else it is left out and listed",
+        name="Stop at the first error",
+        description="Build nothing if a file cannot be used. Off: the file is skipped and listed",
     )
     exclude: StringProperty(
-        name="Leave out",
-        description="File names to leave out, separated by commas, for example: *_02.bvh, test*",
+        name="Exclude",
+        description="File names to exclude, separated by commas, for example: *_02.bvh, test*",
     )
     is_build_open: BoolProperty(
-        name="Build from motion files", description="Make another motion database"
+        name="Build from motion files", description="Build another motion database"
     )
     take: StringProperty(name="Take", description="The recorded take (.csv) to reconstruct")
     preset: EnumProperty(name="Preset", description="How to reconstruct", items=PRESETS)
     offline: BoolProperty(
-        name="Offline",
+        name="Best quality",
         description=(
-            "Online reconstructs as a live performance would, from what was read so far. "
-            "Offline looks at the whole take for every frame: closer, and slower"
+            "Use the whole take for every frame: more accurate and smoother, but slower. "
+            "Off: the same as in a live preview"
         ),
     )
     start_frame: FloatProperty(
         name="Start frame",
-        description="The frame on which the take begins",
+        description="The scene frame on which the take starts",
         default=1.0,
         precision=0,
         step=100,
     )
     reuse_armature: BoolProperty(
         name="Reuse armature",
-        description="Add the action to a Sparse Mocap armature of this scene, not to a new one",
+        description="Put the action on a Sparse Mocap armature in this scene, not on a new one",
     )
     calibration: StringProperty(
         name="Calibration",
         description=(
-            "How the sensors are strapped on (.json), as Calibrate found it. Empty: worn as "
-            "Tautges et al. 2011 do"
+            "Calibration of the sensors (.json), made with Calibrate. Empty: the sensors are worn "
+            "in the default orientation (see README)"
         ),
         subtype="FILE_PATH",
     )
     height_m: FloatProperty(
         name="Height (m)",
-        description="How tall the performer is, in metres",
+        description="Body height of the performer, in metres",
         default=1.75,
         min=0.5,
         max=2.5,
@@ -123,19 +123,26 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
         search_options={"SUGGESTION"},
     )
     driver: StringProperty(
-        name="Driver", description="What the sensors speak", search=_drivers, default="xsens_mt"
+        name="Sensor protocol",
+        description="Which kind of sensors is connected",
+        search=_drivers,
+        default="xsens_mt",
     )
     baud: IntProperty(
-        name="Baud", description="Bits a second of the serial port", default=115200, min=1200
+        name="Baud rate",
+        description="Speed of the serial port, in bits per second",
+        default=115200,
+        min=1200,
     )
     driver_options: StringProperty(
-        name="Options", description="The driver's options, for example: rate_hz=100, output=mtdata"
+        name="Options",
+        description="Options of the protocol, for example: rate_hz=100, output=mtdata",
     )
     sites: StringProperty(
-        name="Worn on",
+        name="Sensor locations",
         description=(
-            "Where the sensors are worn, in their order and separated by commas, for example: "
-            "left_wrist, right_wrist. Empty: by their names"
+            "Where each sensor is worn, in the order of the sensors and separated by commas, for "
+            "example: left_wrist, right_wrist. Empty: the names of the sensors"
         ),
     )
 
@@ -146,14 +153,14 @@ def settings_of(scene: Scene) -> SPARSEMOCAP_PG_settings:
 
 
 def register() -> None:
-    """Give scenes their settings."""
+    """Register the settings."""
     bpy.utils.register_class(SPARSEMOCAP_PG_source)
     bpy.utils.register_class(SPARSEMOCAP_PG_settings)
     Scene.sparse_mocap = PointerProperty(type=SPARSEMOCAP_PG_settings)
 
 
 def unregister() -> None:
-    """Take the settings away."""
+    """Unregister the settings."""
     del Scene.sparse_mocap
     bpy.utils.unregister_class(SPARSEMOCAP_PG_settings)
     bpy.utils.unregister_class(SPARSEMOCAP_PG_source)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the animator works with, without Blender: jobs, opened files, reconstructions."""
+"""The add-on's logic without Blender: jobs, files, live sessions, reconstructions."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The clips of a motion database as a list that is searched and sorted."""
+"""The clips of a motion database as a list to search and sort."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SORT_KEYS = ("name", "length", "actor")
 
 @dataclass(frozen=True)
 class ClipRow:
-    """What the list shows of a clip."""
+    """A clip in the list."""
 
     name: str
     actor: str
@@ -24,12 +24,12 @@ class ClipRow:
 
     @property
     def label(self) -> str:
-        """The name, and which copy it is."""
+        """The name, and for a copy which kind."""
         return f"{self.name} ({self.copy})" if self.copy else self.name
 
 
 class ClipTable:
-    """All clips of a database in its own order."""
+    """All clips of a database, in the database's order."""
 
     def __init__(self, rows: Sequence[ClipRow]) -> None:
         self.rows = tuple(rows)
@@ -39,11 +39,11 @@ class ClipTable:
 
     @property
     def has_copies(self) -> bool:
-        """Whether some clips are mirrored, reversed or of another tempo."""
+        """Whether some clips are mirrored, reversed or at another tempo."""
         return any(row.copy for row in self.rows)
 
     def _chosen(self, text: str, shows_copies: bool) -> tuple[bool, ...]:
-        """For each clip whether all words of the text are in its name, actor or class."""
+        """For each clip, whether its name, actor or class contains all words of the text."""
         words = text.lower().split()
         return tuple(
             (shows_copies or not row.copy) and all(word in known for word in words)
@@ -51,7 +51,7 @@ class ClipTable:
         )
 
     def _order(self, key: str) -> tuple[int, ...]:
-        """For each clip its place in the list sorted by name, length or actor."""
+        """For each clip, its rank when sorted by name, length or actor."""
         columns = {
             "name": lambda row: row.label.lower(),
             "length": lambda row: row.length_s,
@@ -59,10 +59,10 @@ class ClipTable:
         }
         value = columns[key]
         ranked = sorted(range(len(self.rows)), key=lambda index: value(self.rows[index]))
-        places = [0] * len(ranked)
-        for place, index in enumerate(ranked):
-            places[index] = place
-        return tuple(places)
+        ranks = [0] * len(ranked)
+        for rank, index in enumerate(ranked):
+            ranks[index] = rank
+        return tuple(ranks)
 
 
 def table_of(clips: Sequence[Any], rate_hz: float) -> ClipTable:

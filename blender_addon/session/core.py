@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The package ``sparse_mocap``, installed or in the add-on's ``vendor`` folder."""
+"""Finds the package ``sparse_mocap``, installed or in the add-on's ``vendor`` folder."""
 
 import importlib
 import sys
@@ -29,7 +29,7 @@ CAPTURE_MODULES = (
 
 
 def core() -> ModuleType:
-    """The package; raises InputError with one line for the animator when there is none."""
+    """The package; raises InputError with one line for the animator when it is missing."""
     module, reason = _found()
     if module is None:
         raise InputError(reason)
@@ -37,7 +37,7 @@ def core() -> ModuleType:
 
 
 def missing_reason() -> str:
-    """Why the package cannot be used and what to do about it; empty when all is well."""
+    """Why the package cannot be used and what to do; empty when it can."""
     return _found()[1]
 
 
@@ -47,10 +47,13 @@ def _found() -> tuple[ModuleType | None, str]:
         return _imported(), ""
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] != "sparse_mocap":
-            return None, f"The Python package {error.name} is missing: install it for Blender"
+            return (
+                None,
+                f"The Python package {error.name} is missing: install it in Blender's Python",
+            )
         return None, _not_there(error.name or "")
-    except Exception as error:  # whatever a broken installation raises, the panel must say it
-        return None, f"The Sparse Mocap core does not load, reinstall the add-on: {one_line(error)}"
+    except Exception as error:  # the panel shows whatever a broken installation raises
+        return None, f"Sparse Mocap cannot be loaded, reinstall the add-on: {one_line(error)}"
 
 
 def capture() -> ModuleType:
@@ -60,12 +63,12 @@ def capture() -> ModuleType:
         return _with_vendor(CAPTURE_MODULES)
     except ImportError as error:
         raise InputError(
-            f"Real sensors need the Python package {error.name}: install it for Blender"
+            f"Real sensors need the Python package {error.name}: install it in Blender's Python"
         ) from error
 
 
 def _imported() -> ModuleType:
-    """The package, with all the modules of it that the add-on uses."""
+    """The package, with all its modules that the add-on uses."""
     _with_vendor(MODULES)
     return sys.modules["sparse_mocap"]
 
@@ -85,8 +88,8 @@ def _with_vendor(names: tuple[str, ...]) -> ModuleType:
 def _not_there(name: str) -> str:
     python = f"{sys.version_info.major}.{sys.version_info.minor}"
     if name == "sparse_mocap":
-        return "The Sparse Mocap core is not installed: install the add-on from its release file"
+        return "The add-on is incomplete, its core is missing: install it from the release file"
     return (
-        f"The Sparse Mocap core was not made for this Blender's Python {python}: "
-        "install the add-on's release for this Blender"
+        f"This release of the add-on does not support Blender's Python {python}: "
+        "install the release for this Blender version"
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Step 1, the motion database: what is in it, and how one is built from motion files."""
+"""Step 1, the motion database: open one, or build one from motion files."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from typing import Any
 from .clips import ClipTable, table_of
 from .core import core
 from .errors import InputError
+from .file_cache import FileCache
 from .job import Job, Progress
-from .opened import Shelf
 
 SUFFIX = ".smdb"
 BUILDING = "Building the motion database"
@@ -21,7 +21,7 @@ TEMPOS = (0.8, 1.25)
 
 @dataclass(frozen=True)
 class Database:
-    """An opened motion database and what the animator sees of it."""
+    """An open motion database and what the panel shows of it."""
 
     motions: Any  # sparse_mocap.MotionDatabase
     clips: ClipTable
@@ -47,7 +47,7 @@ def open_database(path: str) -> Database:
     )
 
 
-databases: Shelf[Database] = Shelf("motion database", open_database)
+databases: FileCache[Database] = FileCache("motion database", open_database)
 
 
 @dataclass(frozen=True)
@@ -58,28 +58,28 @@ class BuildChoices:
     mirror: bool = False
     reverse: bool = False
     tempos: bool = True
-    """Whether a small database gets copies at other tempos."""
+    """Whether a small database also gets copies at other tempos."""
     strict: bool = False
-    """Whether one file that cannot be used stops the build."""
+    """Whether the first file that cannot be used stops the build."""
     exclude: str = ""
-    """Patterns of file names to leave out, separated by commas."""
+    """Patterns of file names to exclude, separated by commas."""
 
 
 @dataclass(frozen=True)
 class BuildSummary:
-    """What came of a build."""
+    """The result of a build."""
 
     path: str
     num_files: int
     num_clips: int
     skipped: list[tuple[str, str]]
-    """Files that were left out, and why."""
+    """Skipped files, and why."""
     warnings: list[str]
 
     def text(self) -> str:
-        """All of it for people."""
+        """The report."""
         lines = [f"{self.path}: {self.num_clips} clips from {self.num_files} files"]
-        lines += ["", f"Left out: {len(self.skipped)}"]
+        lines += ["", f"Skipped: {len(self.skipped)}"]
         lines += [f"{name}: {reason}" for name, reason in self.skipped]
         lines += ["", f"Warnings: {len(self.warnings)}", *self.warnings]
         return "\n".join(lines) + "\n"
@@ -97,15 +97,15 @@ def build_job(sources: list[str], output: str, choices: BuildChoices) -> tuple[J
     sparse_mocap = core()
     named = list(dict.fromkeys(source for source in sources if source))
     if not named:
-        raise InputError("Choose the folder of motion files (.bvh, or .asf with .amc) first")
+        raise InputError("Choose a folder with motion files (.bvh, or .amc with .asf) first")
     for source in named:
         if not os.path.exists(source):
-            raise InputError(f"There is no folder {source}: choose the folder of motion files")
+            raise InputError(f"{source} does not exist: choose a folder with motion files")
     target = checked_output(output or default_output(named[0]))
     patterns = [pattern.strip() for pattern in choices.exclude.split(",") if pattern.strip()]
 
     def work(progress: Progress) -> BuildSummary:
-        databases.forget()  # where an open file cannot be replaced
+        databases.forget()  # an open file cannot be replaced on Windows
         report = sparse_mocap.build_database(
             named,
             target,
@@ -128,20 +128,18 @@ def build_job(sources: list[str], output: str, choices: BuildChoices) -> tuple[J
 
 
 def default_output(source: str) -> str:
-    """The database file beside the folder that it is built from."""
+    """The default database file, next to the folder that it is built from."""
     folder = Path(source)
     return str(folder.with_name(folder.name + SUFFIX)) if folder.name else ""
 
 
 def checked_output(path: str) -> str:
-    """The path with its ending; raises InputError when no file can be there."""
+    """The path with its extension; raises InputError when no file can be written there."""
     if not path:
-        raise InputError(f"Name the {SUFFIX} file to write")
+        raise InputError(f"Choose a {SUFFIX} file to save to")
     target = Path(path if path.endswith(SUFFIX) else path + SUFFIX)
     if target.is_dir():
-        raise InputError(f"{target} is a folder: name a {SUFFIX} file")
+        raise InputError(f"{target} is a folder: choose a {SUFFIX} file to save to")
     if not target.parent.is_dir():
-        raise InputError(
-            f"There is no folder {target.parent}: choose another place for {target.name}"
-        )
+        raise InputError(f"There is no folder {target.parent}: choose where to save {target.name}")
     return str(target)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What can go wrong, said to the animator in one line."""
+"""Errors as one line for the animator."""
 
 import logging
 
@@ -7,7 +7,7 @@ log = logging.getLogger("sparse_mocap.blender")
 
 
 class InputError(ValueError):
-    """What was asked for cannot be done; str() is one line: what is wrong and what to do."""
+    """The request cannot be fulfilled; str() is one line: what is wrong and what to do."""
 
 
 def one_line(error: BaseException) -> str:
@@ -18,6 +18,6 @@ def one_line(error: BaseException) -> str:
     if isinstance(error, ValueError | OSError) and text:
         return text
     if isinstance(error, MemoryError):
-        return "There is not enough memory for this"
+        return "Not enough memory: close other programs, or use fewer or shorter files"
     log.debug("unexpected error", exc_info=error)
     return f"Unexpected {type(error).__name__}: {text}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Motion files as they are, on their own skeletons or on the standard one."""
+"""Imported motion files, on their own skeletons or on the standard skeleton."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ from numpy.typing import NDArray
 
 from .core import core
 from .errors import InputError
+from .file_cache import FileCache
 from .job import Cancelled, Job, Progress
 from .mapping import Mapped, last_mapped, mapped
-from .opened import Shelf
 
 IMPORTING = "Importing"
 BVH, ACCLAIM = (".bvh",), (".asf", ".amc")
 USUAL_SIZES_M = (0.5, 3.0)
 
-_BVH_UNIT_M = 0.01  # what is taken when a .bvh is read without saying
+_BVH_UNIT_M = 0.01  # the reader's default for .bvh
 
 
 @dataclass(frozen=True)
-class Reading:
-    """How a motion file is to be read."""
+class ImportOptions:
+    """Options of the import."""
 
     unit_m: float | None = None
-    """Metres a unit of the file; None: what the file says, and centimetres for .bvh."""
+    """The file's length unit in metres; None: the one stored in the file, centimetres for .bvh."""
     up: str = "y"
     amc_rate_hz: float = 120.0
     is_standard: bool = False
-    """Whether the motion is put onto the standard skeleton."""
+    """Whether to transfer the motion to the standard skeleton."""
 
 
 @dataclass(frozen=True)
 class LoadedMotion:
-    """A motion file that was read. T frames (none: a skeleton alone), J joints."""
+    """A motion file. T frames (0: only a skeleton), J joints."""
 
     name: str
     skeleton: Any  # sparse_mocap.Skeleton
@@ -48,38 +48,37 @@ class LoadedMotion:
     offset_tracks: list[tuple[int, NDArray[np.float64]]]  # joint and (T, 3) m
     warnings: list[str]
     is_standard: bool
-    """Whether it is on the standard skeleton."""
+    """Whether the motion is on the standard skeleton."""
     mapped: Mapped
-    """The file's skeleton, and where its body was found."""
+    """The file's skeleton and its mapping."""
 
     @property
     def num_frames(self) -> int:
-        """How many frames there are."""
+        """Number of frames."""
         return len(self.root_positions)
 
 
 @dataclass(frozen=True)
-class Glance:
-    """What is seen of a motion file before it is imported."""
+class FileSummary:
+    """Content of a motion file, shown before it is imported."""
 
     num_joints: int
     num_frames: int
     rate_hz: float
     size_m: float
-    """The longest side of the box around the figure as the file says."""
+    """Longest side of the figure's bounding box, in m with the file's own unit."""
     size_units: float
-    """The same in the file's own unit."""
+    """The same in units of the file."""
 
     def size_with(self, unit_m: float | None) -> float:
-        """The figure's size (m) when the file's unit is that long."""
+        """The figure's size (m) with another unit; None: the file's own."""
         return self.size_m if unit_m is None else self.size_units * unit_m
 
 
-def import_job(paths: list[str], endings: tuple[str, ...], reading: Reading) -> Job:
+def import_job(paths: list[str], endings: tuple[str, ...], options: ImportOptions) -> Job:
     """The job that reads motion files; its result is a list of LoadedMotion.
 
-    Among .amc files an .asf is not read alone; one that is chosen with them is their skeleton.
-    Raises InputError, or what a file is at fault for.
+    An .asf that is chosen together with .amc files is used as their skeleton. Raises InputError.
     """
     core()
     chosen = _checked(paths, endings)
@@ -92,7 +91,7 @@ def import_job(paths: list[str], endings: tuple[str, ...], reading: Reading) -> 
         for index, path in enumerate(motions):
             if not progress(index, len(motions), Path(path).name):
                 raise Cancelled("Cancelled")
-            loaded.append(load_motion(path, reading, asf))
+            loaded.append(load_motion(path, options, asf))
         if not progress(len(motions), len(motions), ""):
             raise Cancelled("Cancelled")
         return loaded
@@ -100,23 +99,23 @@ def import_job(paths: list[str], endings: tuple[str, ...], reading: Reading) -> 
     return Job(IMPORTING, work)
 
 
-def load_motion(path: str, reading: Reading, asf: str | None = None) -> LoadedMotion:
+def load_motion(path: str, options: ImportOptions, asf: str | None = None) -> LoadedMotion:
     """The motion in the file. Raises FormatError, MappingError and OSError."""
     sparse_mocap = core()
     motion, warnings = sparse_mocap.read_motion(
         path,
-        amc_rate_hz=reading.amc_rate_hz,
-        unit_m=reading.unit_m,
-        up=reading.up,
+        amc_rate_hz=options.amc_rate_hz,
+        unit_m=options.unit_m,
+        up=options.up,
         asf=asf,
         allow_no_frames=True,
     )
     name = Path(path).stem
     found = mapped(name, motion)
-    is_standard = reading.is_standard and motion.num_frames > 0
+    is_standard = options.is_standard and motion.num_frames > 0
     if is_standard:
         if found.problem:
-            last_mapped[:] = [found]  # to be mended in its panel
+            last_mapped[:] = [found]  # to be corrected in the panel
         motion, more = sparse_mocap.to_standard(motion)
         warnings = warnings + more
     return LoadedMotion(
@@ -132,8 +131,8 @@ def load_motion(path: str, reading: Reading, asf: str | None = None) -> LoadedMo
     )
 
 
-def glance_at(path: str) -> Glance:
-    """What is in the file. Raises FormatError and OSError."""
+def summarize(path: str) -> FileSummary:
+    """Read the file's summary. Raises FormatError and OSError."""
     read = core().read_motion
     motion, _ = read(path, allow_no_frames=True)
     size_m = _size_m(motion)
@@ -141,7 +140,7 @@ def glance_at(path: str) -> Glance:
         size_units = _size_m(read(path, unit_m=1.0, allow_no_frames=True)[0])
     else:
         size_units = size_m / _BVH_UNIT_M
-    return Glance(
+    return FileSummary(
         num_joints=len(motion.skeleton.parents),
         num_frames=motion.num_frames,
         rate_hz=1.0 / motion.frame_time_s,
@@ -150,11 +149,11 @@ def glance_at(path: str) -> Glance:
     )
 
 
-glances: Shelf[Glance] = Shelf("motion file", glance_at)
+file_summaries: FileCache[FileSummary] = FileCache("motion file", summarize)
 
 
 def _size_m(motion: Any) -> float:
-    """The longest side of the box around the figure in the first frame, else in rest pose."""
+    """Longest side of the figure's bounding box, in the first frame or else in rest pose."""
     if motion.num_frames > 0:
         points = motion.trimmed(0, 1).joint_positions("world")[0]
     else:
@@ -172,7 +171,7 @@ def _ending(path: str) -> str:
 
 
 def _checked(paths: list[str], endings: tuple[str, ...]) -> list[str]:
-    """The paths, if there are any and all end as they should. Raises InputError."""
+    """The paths without repetitions. Raises InputError for none or a wrong extension."""
     expected = " or ".join(endings)
     if not paths:
         raise InputError(f"Choose a file that ends in {expected}")

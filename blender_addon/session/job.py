@@ -10,7 +10,7 @@ from typing import Any
 from .errors import InputError
 
 Progress = Callable[[int, int, str], bool]
-"""Called with what is done, the total and what is being done; False asks to stop."""
+"""Called with steps done, total steps and the current item; returns False to cancel."""
 
 _JOIN_TIMEOUT_S = 10.0
 
@@ -18,11 +18,11 @@ _current: Job | None = None
 
 
 class Cancelled(Exception):
-    """The animator asked to stop."""
+    """The animator cancelled."""
 
 
 class Job:
-    """One long call. It gets a Progress; what it returns is the result."""
+    """A long call: work(progress) on a worker thread, and its result."""
 
     def __init__(self, label: str, work: Callable[[Progress], Any]) -> None:
         self.label = label
@@ -38,12 +38,12 @@ class Job:
 
     @property
     def is_running(self) -> bool:
-        """Whether the worker thread is at work."""
+        """Whether the worker thread is running."""
         return self._thread.is_alive()
 
     @property
     def is_cancelled(self) -> bool:
-        """Whether the job was asked to stop."""
+        """Whether the job was cancelled."""
         return self._stop.is_set()
 
     @property
@@ -52,28 +52,28 @@ class Job:
         return f"{self.label}: {self.what}" if self.what else self.label
 
     def start(self) -> None:
-        """Begin on the worker thread. Raises InputError while another job runs."""
+        """Start the worker thread. Raises InputError while another job is running."""
         _occupy(self)
         self._thread.start()
 
     def run(self, listener: Callable[[], None] | None = None) -> Any:
-        """Do the work here and now and return its result; the listener hears each progress."""
+        """Do the work on this thread and return its result; calls the listener at each progress."""
         _occupy(self)
         self._listener = listener
         self._run()
         return self.result()
 
     def cancel(self) -> None:
-        """Ask to stop; the work ends at its next progress."""
+        """Ask the work to stop at its next progress."""
         self._stop.set()
 
     def join(self) -> None:
-        """Wait for the worker thread to end."""
+        """Wait for the worker thread."""
         if self._thread.is_alive():
             self._thread.join(_JOIN_TIMEOUT_S)
 
     def result(self) -> Any:
-        """What the work returned; raises what it raised, and Cancelled if it was stopped."""
+        """The result; raises the work's exception, or Cancelled when it was cancelled."""
         if self._error is None:
             return self._result
         if self._stop.is_set():
@@ -83,7 +83,7 @@ class Job:
     def _run(self) -> None:
         try:
             self._result = self._work(self._on_progress)
-        except BaseException as error:  # handed over to whoever asks for the result
+        except BaseException as error:  # raised again by result()
             self._error = error
         finally:
             _release(self)
@@ -97,12 +97,12 @@ class Job:
 
 
 def current() -> Job | None:
-    """The job at work."""
+    """The running job."""
     return _current
 
 
 def cancel_current() -> None:
-    """Stop the job at work, if any, and wait for its end."""
+    """Cancel the running job, if any, and wait for it."""
     job = _current
     if job is not None:
         job.cancel()
@@ -112,7 +112,7 @@ def cancel_current() -> None:
 def _occupy(job: Job) -> None:
     global _current
     if _current is not None:
-        raise InputError(f"{_current.label} is still at work: wait for it or cancel it first")
+        raise InputError(f"{_current.label} is still running: wait or cancel it first")
     _current = job
 
 

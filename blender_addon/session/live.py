@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Attached to the real sensors: a worker thread that follows a capture and makes poses of it."""
+"""A live session with real sensors: a worker thread reads a capture and reconstructs poses."""
 
 from __future__ import annotations
 
@@ -18,35 +18,35 @@ from .live_poses import LivePoses, Pose, Quality
 
 STOP_WITHIN_S = 1.0
 ANSWER_WITHIN_S = 10.0
-_NAP_S = 0.005
+_POLL_S = 0.005
 _STATUS_S = 0.25
 
 
 @dataclass(frozen=True)
 class LiveState:
-    """All that the panel shows of a session; a new one now and then."""
+    """What the panel shows of a session; replaced as a whole."""
 
     is_connected: bool = False
     error: str = ""
     """Why the session ended; one line."""
     warning: str = ""
-    """Why there are no poses though live is on."""
+    """Why the live preview has no poses."""
     links: tuple[dict[str, Any], ...] = ()
-    """As the capture's status has them: state, message, counters."""
+    """From the capture's status: state, message, counters."""
     sensors: tuple[dict[str, Any], ...] = ()
-    """As the capture's status has them: name, site, rate_hz, state, missing."""
+    """From the capture's status: name, site, rate_hz, state, missing."""
     recording: dict[str, Any] | None = None
     is_live: bool = False
     quality: Quality = field(default_factory=Quality)
     num_dropped: int = 0
-    """Poses that were made and never shown, since newer ones came first."""
+    """Poses that were replaced by newer ones before they were shown."""
 
 
 class LiveSession:
-    """A capture's client on a thread of its own. All methods return at once or within a second."""
+    """A capture client on its own thread. All methods return at once or within a second."""
 
     def __init__(self, connect: Callable[[], Any], label: str) -> None:
-        """connect: makes the CaptureClient."""
+        """connect: creates the CaptureClient."""
         self.label = label
         self._connect = connect
         self._requests: SimpleQueue[tuple[Callable[[Any], Any], Future[Any]]] = SimpleQueue()
@@ -56,64 +56,64 @@ class LiveSession:
         self._pose: Pose | None = None
         self._is_pose_new = False
         self._wanted: tuple[Database, str, Any] | None = None
-        self._made_for: tuple[Database, str, Any] | None = None
+        self._active: tuple[Database, str, Any] | None = None
         self._poses: LivePoses | None = None
-        self._worn: dict[int, str] = {}
+        self._sites: dict[int, str] = {}
         self._with_gyroscope: frozenset[int] = frozenset()
         self._thread = threading.Thread(target=self._run, name="Sparse Mocap: live", daemon=True)
 
     @property
     def state(self) -> LiveState:
-        """How things are, at once."""
+        """The current state, without waiting."""
         return self._state
 
     @property
     def is_running(self) -> bool:
-        """Whether the session goes on."""
+        """Whether the session is running."""
         return self._thread.is_alive()
 
     def start(self) -> None:
-        """Begin; what goes wrong is in the state."""
+        """Start the thread; errors are in the state."""
         self._thread.start()
 
     def close(self) -> bool:
-        """End the session and return whether its thread ended in time; a recording goes on."""
+        """End the session; returns whether its thread ended in time. A recording continues."""
         self._stop.set()
         if self._thread.is_alive():
             self._thread.join(STOP_WITHIN_S)
         return not self._thread.is_alive()
 
     def go_live(self, database: Database, preset: str, calibration: Any = None) -> None:
-        """Make poses from now on. calibration: as LivePoses takes it."""
+        """Start the live preview. calibration: as for LivePoses."""
         self._wanted = (database, preset, calibration)
 
     def use_calibration(self, calibration: Any) -> None:
-        """Make poses with another calibration, if poses are being made."""
+        """Use another calibration in a running live preview."""
         if self._wanted is not None:
             self._wanted = (*self._wanted[:2], calibration)
 
     def leave_live(self) -> None:
-        """Make no more poses."""
+        """Stop the live preview."""
         self._wanted = None
 
     @property
     def is_live_wanted(self) -> bool:
-        """Whether poses are to be made."""
+        """Whether the live preview is on."""
         return self._wanted is not None
 
     def newest_pose(self) -> Pose | None:
-        """The newest pose, None when it was asked for already."""
+        """The newest pose; None when it was returned before."""
         with self._lock:
             pose, is_new = self._pose, self._is_pose_new
             self._is_pose_new = False
         return pose if is_new else None
 
     def record(self, seconds: float | None = None) -> Future[Any]:
-        """Begin to record, for so long or until it is stopped."""
+        """Start recording, for this long or until stopped."""
         return self._ask(lambda client: client.record(seconds))
 
     def stop_recording(self) -> Future[Any]:
-        """End the recording; the result is the capture's folder and the recording's number."""
+        """Stop recording; the result is the capture's folder and the recording's number."""
 
         def stop(client: Any) -> tuple[Any, int]:
             recording = client.status()["recording"]
@@ -138,11 +138,11 @@ class LiveSession:
             client = self._connect()
             self._follow(client)
         except Exception as error:  # shown in the panel
-            self._tell(error=one_line_of(error))
+            self._update(error=one_line_of(error))
         finally:
             if client is not None:
-                self._let_go(client)
-            self._tell(is_connected=False, is_live=False)
+                self._leave(client)
+            self._update(is_connected=False, is_live=False)
             while not self._requests.empty():
                 self._requests.get()[1].set_exception(InputError("The sensors were disconnected"))
 
@@ -153,28 +153,28 @@ class LiveSession:
                 _answer(*self._requests.get(), client)
                 next_status_s = 0.0
             if time.monotonic() >= next_status_s:
-                self._take_up(client.status())
+                self._apply_status(client.status())
                 next_status_s = time.monotonic() + _STATUS_S
             self._advance(client.read())
-            self._stop.wait(_NAP_S)
+            self._stop.wait(_POLL_S)
 
-    def _take_up(self, status: dict[str, Any]) -> None:
+    def _apply_status(self, status: dict[str, Any]) -> None:
         for link in status["links"]:
             if link["state"] == "failed":
-                raise InputError(link["message"] or f"{link['port']}: failed")
-        worn = {i: sensor["site"] for i, sensor in enumerate(status["sensors"])}
-        turned = frozenset(
+                raise InputError(link["message"] or f"{link['port']}: cannot be used")
+        sites = {i: sensor["site"] for i, sensor in enumerate(status["sensors"])}
+        with_gyroscope = frozenset(
             i for i, sensor in enumerate(status["sensors"]) if sensor["has_gyroscope"]
         )
-        is_settled = (worn, turned) == (self._worn, self._with_gyroscope)
-        self._worn, self._with_gyroscope = worn, turned
+        is_settled = (sites, with_gyroscope) == (self._sites, self._with_gyroscope)
+        self._sites, self._with_gyroscope = sites, with_gyroscope
         wanted = self._wanted
-        if not is_settled or wanted is not self._made_for:
+        if not is_settled or wanted is not self._active:
             self._poses = None
-        if wanted is not None and self._poses is None and worn and is_settled:
-            self._made_for = wanted
+        if wanted is not None and self._poses is None and sites and is_settled:
+            self._active = wanted
             self._begin_poses(*wanted)
-        self._tell(
+        self._update(
             is_connected=True,
             links=tuple(status["links"]),
             sensors=tuple(status["sensors"]),
@@ -186,11 +186,11 @@ class LiveSession:
     def _begin_poses(self, database: Database, preset: str, calibration: Any) -> None:
         try:
             self._poses = LivePoses(
-                database.motions, self._worn, preset, calibration, self._with_gyroscope
+                database.motions, self._sites, preset, calibration, self._with_gyroscope
             )
-            self._tell(warning="", num_dropped=0)
-        except Exception as error:  # sensors may get places, or others may come
-            self._tell(warning=one_line_of(error))
+            self._update(warning="", num_dropped=0)
+        except Exception as error:  # shown until the sensors or their locations change
+            self._update(warning=one_line_of(error))
 
     def _advance(self, samples: Any) -> None:
         if self._poses is None:
@@ -202,36 +202,36 @@ class LiveSession:
             num_dropped = self._state.num_dropped + self._is_pose_new
             self._pose, self._is_pose_new = pose, True
         if num_dropped != self._state.num_dropped:
-            self._tell(num_dropped=num_dropped)
+            self._update(num_dropped=num_dropped)
 
-    def _let_go(self, client: Any) -> None:
-        """The capture ends, unless it records or others are attached to it."""
-        with suppress(Exception):  # it may be gone already
+    def _leave(self, client: Any) -> None:
+        """Detach; the capture ends unless it is recording or has other clients."""
+        with suppress(Exception):  # it may have ended already
             client.leave()
         client.close()
 
-    def _tell(self, **changes: Any) -> None:
-        """Only ever called by the session's thread."""
+    def _update(self, **changes: Any) -> None:
+        """Replace the state; only called by the session's thread."""
         self._state = replace(self._state, **changes)
 
 
 def answer_of(future: Future[Any], seconds: float) -> Any:
-    """The answer to a request. Raises what went wrong, InputError when there is none in time."""
+    """The answer to a request. Raises the request's error, or InputError on a timeout."""
     try:
         return future.result(seconds)
     except TimeoutError as error:
-        raise InputError("The capture does not answer: disconnect and attach again") from error
+        raise InputError("The sensors do not respond: disconnect and connect again") from error
 
 
 def _answer(request: Callable[[Any], Any], future: Future[Any], client: Any) -> None:
     try:
         future.set_result(request(client))
-    except Exception as error:  # for whoever waits for the answer
+    except Exception as error:  # raised by answer_of
         future.set_exception(error)
 
 
 def one_line_of(error: BaseException) -> str:
-    """As one_line; a capture's errors are written for the user already."""
+    """As one_line, but a capture's error messages are used as they are."""
     if type(error).__module__.endswith("capture.errors"):
         return " ".join(str(error).split())
     return one_line(error)
@@ -241,21 +241,21 @@ _current: LiveSession | None = None
 
 
 def current() -> LiveSession | None:
-    """The session, also one that ended by itself."""
+    """The session, even if it has ended by itself."""
     return _current
 
 
 def begin(session: LiveSession) -> None:
-    """Start the session in the place of another. Raises InputError while that goes on."""
+    """Start a new session. Raises InputError while the last one is running."""
     global _current
     if _current is not None and _current.is_running:
-        raise InputError(f"{_current.label} is connected: press Disconnect first")
+        raise InputError(f"{_current.label} is still connected: press Disconnect first")
     _current = session
     session.start()
 
 
 def end() -> None:
-    """End the session, if there is one; a recording goes on without it."""
+    """End the session, if there is one. A recording continues."""
     global _current
     session, _current = _current, None
     if session is not None:

@@ -64,7 +64,7 @@ class LivePoses:
         known = core().site_names()
         for site in self._worn.sites:
             if site not in known:
-                raise InputError(f'The sensor "{site}" has no place on the body: name its place')
+                raise InputError(f'Unknown sensor location "{site}": set the sensor locations')
         channels = core().readings.Channels(self._worn.sites, self._worn.places, self._has_up)
         self._solver = channels.reconstructor(motions, preset=preset)
         live_readings = capture().live_readings

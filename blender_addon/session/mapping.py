@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which joint of a file's skeleton is which of the standard one, found or said by hand."""
+"""Maps the joints of a file's skeleton to the standard skeleton, automatically or by hand."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from .core import core
 from .errors import InputError, one_line
 
 SUFFIX = ".json"
-_MOST_FRAMES = 1000  # of a motion, to see the body by
+_MOST_FRAMES = 1000  # of a motion, to detect the joints from
 
 
 @dataclass(frozen=True)
 class Mapped:
-    """A skeleton and where its body was found."""
+    """A skeleton and its mapping."""
 
     name: str
     motion: Any  # sparse_mocap.Motion, the first frames of the file
     joints: dict[str, str]
-    """The skeleton's joint by standard joint; those that were found."""
+    """The file's joint for each standard joint that is mapped."""
     problem: str
-    """Why no body was found; empty when one was."""
+    """Why there is no mapping; empty when there is."""
 
     @property
     def source_joints(self) -> list[str]:
-        """All joints of the skeleton."""
+        """All joints of the file's skeleton."""
         return list(self.motion.skeleton.names)
 
 
@@ -35,7 +35,7 @@ last_mapped: list[Mapped] = []
 
 
 def mapped(name: str, motion: Any, by_hand: dict[str, str] | None = None) -> Mapped:
-    """The body in a motion: as it is told, else as it is remembered, else as it looks."""
+    """The mapping of a motion: by hand if given, else the remembered one, else detected."""
     if motion.num_frames > _MOST_FRAMES:
         motion = motion.trimmed(0, _MOST_FRAMES)
     try:
@@ -46,19 +46,19 @@ def mapped(name: str, motion: Any, by_hand: dict[str, str] | None = None) -> Map
 
 
 def remember(joints: dict[str, str]) -> Mapped:
-    """Keep what was said by hand for every file with the last skeleton. Raises InputError."""
+    """Remember this mapping for every file with the last skeleton. Raises InputError."""
     last = _last()
-    told = _checked(last, joints)
-    found = mapped(last.name, last.motion, told)
+    by_hand = _checked(last, joints)
+    found = mapped(last.name, last.motion, by_hand)
     if found.problem:
         raise InputError(found.problem)
-    core().remember_mapping(last.motion.skeleton, told)
+    core().remember_mapping(last.motion.skeleton, by_hand)
     last_mapped[:] = [found]
     return found
 
 
 def forget() -> Mapped:
-    """Find the body of the last skeleton by its looks again. Raises InputError."""
+    """Forget the remembered mapping of the last skeleton and detect it. Raises InputError."""
     last = _last()
     core().forget_mapping(last.motion.skeleton)
     last_mapped[:] = [mapped(last.name, last.motion)]
@@ -66,28 +66,30 @@ def forget() -> Mapped:
 
 
 def save(path: str, joints: dict[str, str]) -> str:
-    """Write the mapping to a file and return its name. Raises InputError and OSError."""
+    """Write the mapping to a file and return its path. Raises InputError and OSError."""
     target = path if path.lower().endswith(SUFFIX) else path + SUFFIX
     core().write_mapping(target, _checked(_last(), joints))
     return target
 
 
 def load(path: str) -> dict[str, str]:
-    """The mapping in the file. Raises FormatError, and InputError when it is another skeleton's."""
+    """The mapping in the file. Raises FormatError, or InputError for another skeleton."""
     return _checked(_last(), core().read_mapping(path))
 
 
 def _last() -> Mapped:
     if not last_mapped:
-        raise InputError("No skeleton is at hand: import a motion file first")
+        raise InputError("There is no skeleton to map: import a motion file first")
     return last_mapped[0]
 
 
 def _checked(last: Mapped, joints: dict[str, str]) -> dict[str, str]:
-    """Those that name a joint. Raises InputError when the skeleton has none of that name."""
-    told = {standard: joint for standard, joint in joints.items() if joint}
+    """The entries that name a joint. Raises InputError for a joint the skeleton does not have."""
+    named = {standard: joint for standard, joint in joints.items() if joint}
     known = set(last.source_joints)
-    for standard, joint in told.items():
+    for standard, joint in named.items():
         if joint not in known:
-            raise InputError(f'{standard}: "{last.name}" has no joint "{joint}", choose another')
-    return told
+            raise InputError(
+                f'{standard}: "{last.name}" has no joint "{joint}", choose another one'
+            )
+    return named

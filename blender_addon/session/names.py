@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Names that Blender takes as they are."""
+"""Names that Blender accepts unchanged."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ MOST_BYTES = 63
 
 
 def fitting(names: list[str]) -> list[str]:
-    """The names, shortened to what Blender can hold and then told apart by a number."""
+    """The names, shortened to Blender's limit and made unique by a number."""
     taken: set[str] = set()
     return [_free(name, taken) for name in names]
 
@@ -23,5 +23,5 @@ def _free(name: str, taken: set[str]) -> str:
 
 
 def _shortened(name: str, num_bytes: int) -> str:
-    """The longest start of the name that is no longer than that in UTF-8."""
+    """The longest start of the name within that many bytes of UTF-8."""
     return name.encode(errors="replace")[:num_bytes].decode(errors="ignore")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where files of one's own are put, and what they are called."""
+"""Folders and names of new files."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ TAKES = "takes"
 
 
 def takes_folder(blend_path: str) -> Path:
-    """Where takes are kept: beside the .blend file, or in the user's folder before it is saved."""
+    """The folder for takes: next to the .blend file, or in the home folder if it is not saved."""
     home = Path(blend_path).parent if blend_path else Path.home() / "Sparse Mocap"
     return home / TAKES
 
 
 def stamp() -> str:
-    """Date and time as a part of a file's name."""
+    """Date and time for a file name."""
     return time.strftime("%Y%m%d-%H%M%S")
 
 
 def free_path(path: Path) -> Path:
-    """The path, numbered when it is taken."""
+    """The path, with a number if the file exists."""
     candidate, number = path, 1
     while candidate.exists():
         number += 1

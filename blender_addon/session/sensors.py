@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Real sensors as the animator uses them: connected to, recorded, kept as a take."""
+"""Real sensors as the animator uses them: connect, record, save as a take."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from .new_files import free_path, stamp
 from .reconstruct import Performance, reconstruct
 from .take import takes
 
-GOING_LIVE, STOPPING = "Going live", "Keeping the take"
+STARTING_LIVE, SAVING_TAKE = "Starting the live preview", "Saving the take"
 LINGER_S = 2.0
 
 
 @dataclass(frozen=True)
 class Port:
-    """A port and what is spoken there."""
+    """A port and the protocol of the sensors connected to it."""
 
     port: str
     driver: str
     baud: int = 115200
     options: str = ""
-    """The driver's, as in "rate_hz=100, output=mtdata"."""
+    """Of the driver, as in "rate_hz=100, output=mtdata"."""
     sites: str = ""
-    """Where the sensors are worn, separated by commas; empty: by their names."""
+    """Sensor locations, separated by commas; empty: by the sensors' names."""
 
 
 @dataclass(frozen=True)
-class Kept:
-    """A recording that was kept as a take file."""
+class SavedTake:
+    """A recording that was saved as a take file."""
 
     path: str
     warnings: tuple[str, ...]
@@ -46,13 +46,13 @@ class Kept:
 
 
 last_takes: list[str] = []
-"""The file of the take that was kept last, if there is one."""
+"""The file of the take that was saved last, if there is one."""
 
 
-def connecting(port: Port, folder: Path) -> LiveSession:
-    """A session, to be begun, that starts a capture with its logs in that folder of takes.
+def new_session(port: Port, folder: Path) -> LiveSession:
+    """A session, not started yet, that starts a capture with its logs in that folder of takes.
 
-    Raises InputError, or what the driver has to say of its options.
+    Raises InputError, or ConfigError for wrong options of the driver.
     """
     module = capture()
     if not port.port:
@@ -60,7 +60,8 @@ def connecting(port: Port, folder: Path) -> LiveSession:
     sites = tuple(_words(port.sites))
     for site in sites:
         if site not in core().site_names():
-            raise InputError(f'"{site}" is no place of a sensor: {", ".join(core().site_names())}')
+            known = ", ".join(core().site_names())
+            raise InputError(f'Unknown sensor location "{site}": choose from {known}')
     options = _options(port.options)
     module.drivers.make_parser(port.driver, options)
     config = module.CaptureConfig(
@@ -77,32 +78,32 @@ def connecting(port: Port, folder: Path) -> LiveSession:
     return LiveSession(connect, port.port)
 
 
-def attaching(session: Any) -> LiveSession:
-    """A session, to be begun, with a capture (capture.session.Session) that goes on already."""
+def attach_session(session: Any) -> LiveSession:
+    """A session, not started yet, with a running capture (capture.session.Session)."""
     module = capture()
     label = ", ".join(session.ports) or f"process {session.pid}"
     return LiveSession(lambda: module.CaptureClient(session), label)
 
 
-def going_live_job(database_path: str, calibration_path: str) -> Job:
+def live_preview_job(database_path: str, calibration_path: str) -> Job:
     """The job that opens the database; its result is that, and the calibration if there is one."""
     core()
     calibration = calibration_at(calibration_path)
-    return Job(GOING_LIVE, lambda progress: (databases.get(database_path), calibration))
+    return Job(STARTING_LIVE, lambda progress: (databases.get(database_path), calibration))
 
 
-def stopping_job(
+def save_take_job(
     session: LiveSession, database_path: str, calibration_path: str, folder: Path, preset: str
 ) -> Job:
-    """The job that ends the recording, keeps it as a take and reconstructs it; gives a Kept."""
+    """The job that stops the recording, saves and reconstructs it; its result is a SavedTake."""
     module = capture()
 
-    def work(progress: Progress) -> Kept:
+    def work(progress: Progress) -> SavedTake:
         logs, number = answer_of(session.stop_recording(), ANSWER_WITHIN_S)
-        path, warnings = _keep(module, logs, number, folder)
+        path, warnings = _save(module, logs, number, folder)
         last_takes[:] = [path]
         if not database_path:
-            return Kept(path, warnings, None, "no motion database is chosen")
+            return SavedTake(path, warnings, None, "choose a motion database first")
         try:
             performance = reconstruct(
                 databases.get(database_path),
@@ -112,18 +113,18 @@ def stopping_job(
                 offline=False,
                 progress=progress,
             )
-        except Exception as error:  # the take is kept all the same
-            return Kept(path, warnings, None, one_line(error))
-        return Kept(path, warnings, performance)
+        except Exception as error:  # the take is saved all the same
+            return SavedTake(path, warnings, None, one_line(error))
+        return SavedTake(path, warnings, performance)
 
-    return Job(STOPPING, work)
+    return Job(SAVING_TAKE, work)
 
 
-def _keep(module: Any, logs: Path, number: int, folder: Path) -> tuple[str, tuple[str, ...]]:
+def _save(module: Any, logs: Path, number: int, folder: Path) -> tuple[str, tuple[str, ...]]:
     try:
         recorded = module.recording_to_take(logs, number)
     except module.CaptureError as error:
-        raise InputError(f"{one_line_of(error)}; what came is in {logs}") from error
+        raise InputError(f"{one_line_of(error)}; what was received is in {logs}") from error
     folder.mkdir(parents=True, exist_ok=True)
     path = free_path(folder / f"take-{stamp()}.csv")
     core().write_take(path, recorded.take)
@@ -135,7 +136,7 @@ def _options(text: str) -> dict[str, str]:
     for word in _words(text):
         name, equals, value = word.partition("=")
         if not equals:
-            raise InputError(f'"{word}" is no option: write name=value, separated by commas')
+            raise InputError(f'Option "{word}": write name=value, separated by commas')
         options[name.strip()] = value.strip()
     return options
 

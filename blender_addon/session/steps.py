@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Work in steps that yield the share that is done; what they return is the result."""
+"""Work in steps: generators that yield the fraction done and return the result."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Steps = Generator[float, None, T]
 
 
 def finished(steps: Steps[T]) -> T:
-    """The result of the steps, all done here and now."""
+    """Do all steps now and return the result."""
     while True:
         try:
             next(steps)
@@ -22,7 +22,7 @@ def finished(steps: Steps[T]) -> T:
 
 
 def part(steps: Steps[T], begin: float, share: float) -> Steps[T]:
-    """The same steps as a share of larger work that begins at that share of it."""
+    """The same steps as a part (begin, share) of larger work."""
     try:
         while True:
             yield begin + share * next(steps)
@@ -33,7 +33,7 @@ def part(steps: Steps[T], begin: float, share: float) -> Steps[T]:
 
 
 class Slices(Generic[T]):
-    """Steps done a slice of time after another."""
+    """Does steps in slices of time."""
 
     def __init__(self, steps: Steps[T]) -> None:
         self.fraction = 0.0
@@ -41,7 +41,7 @@ class Slices(Generic[T]):
         self._steps = steps
 
     def advance(self, seconds: float) -> bool:
-        """Work for that long; whether all is done then. Raises what a step raises."""
+        """Work for this long; returns whether all steps are done. Raises what a step raises."""
         end = time.monotonic() + seconds
         try:
             while True:
@@ -53,5 +53,5 @@ class Slices(Generic[T]):
             return True
 
     def close(self) -> None:
-        """Leave the rest undone; the steps clean up."""
+        """Stop early; the steps clean up."""
         self._steps.close()

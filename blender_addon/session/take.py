@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Step 2, the take: what the sensors of one performance read."""
+"""Step 2, the take: a recorded performance."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from typing import Any
 import numpy as np
 
 from .core import core
-from .opened import Shelf
+from .file_cache import FileCache
 
 SUFFIX = ".csv"
 
 
 @dataclass(frozen=True)
 class LoadedTake:
-    """A take that was read and what the animator sees of it."""
+    """A take and what the panel shows of it."""
 
     name: str
     take: Any  # sparse_mocap.take.Take
     sensors: list[str]
     duration_s: float
     rate_hz: float
-    """Samples a second of the slowest sensor; 0 when there are too few to tell."""
+    """Samples per second of the slowest sensor; 0 with fewer than two samples."""
 
 
 def read_take(path: str) -> LoadedTake:
@@ -43,4 +43,4 @@ def _rate_hz(times_s: np.ndarray) -> float:
     return 1.0 / float(np.median(np.diff(times_s))) if len(times_s) > 1 else 0.0
 
 
-takes: Shelf[LoadedTake] = Shelf("take", read_take)
+takes: FileCache[LoadedTake] = FileCache("take", read_take)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar: three numbered steps, one file a step; and the import dialog."""
+"""The sidebar panels, one file for each step, and the import dialog."""
 
 import bpy
 
@@ -18,14 +18,14 @@ CLASSES = (
 
 
 def register() -> None:
-    """Show the panels."""
+    """Register the panels."""
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     import_motion.register()
 
 
 def unregister() -> None:
-    """Take the panels away."""
+    """Unregister the panels."""
     forget_timers()
     import_motion.unregister()
     for cls in reversed(CLASSES):

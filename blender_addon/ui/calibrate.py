@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How the sensors are strapped on, in the sidebar."""
+"""The calibration in the sidebar."""
 
 from __future__ import annotations
 
@@ -16,25 +16,28 @@ from .step import StepPanel, action_button, redraw_soon, tick
 
 
 class SPARSEMOCAP_PT_calibration(StepPanel, Panel):
-    """The calibration in use, and how to make one."""
+    """The calibration in use, and the button to make one."""
 
     bl_idname = "SPARSEMOCAP_PT_calibration"
     bl_parent_id = "SPARSEMOCAP_PT_live"
     bl_label = "Calibration"
 
     def draw_header_preset(self, context: Context) -> None:
-        """A tick when there is one."""
+        """A check mark when a calibration is loaded."""
         tick(self.layout, calibrations, bpy.path.abspath(settings_of(context.scene).calibration))
 
     def draw(self, context: Context) -> None:
-        """The file, what it says of each sensor, and the button."""
+        """The file, its values for each sensor, and the button."""
         layout, settings = self.layout, settings_of(context.scene)
         layout.prop(settings, "calibration", text="")
         if settings.calibration:
             _contents(layout, context, bpy.path.abspath(settings.calibration))
         else:
             text.paragraph(
-                layout, context, "Without one, wear the sensors as the manual shows", icon="INFO"
+                layout,
+                context,
+                "Without a calibration, wear the sensors in the default orientation (see README)",
+                icon="INFO",
             )
         session = live.current()
         if session is None or not session.state.is_connected:
@@ -50,7 +53,7 @@ class SPARSEMOCAP_PT_calibration(StepPanel, Panel):
 def _contents(layout: UILayout, context: Context, path: str) -> None:
     entry = calibrations.peek(path)
     if entry.is_opening:
-        layout.label(text="Reading the calibration", icon="SORTTIME")
+        layout.label(text="Loading the calibration", icon="SORTTIME")
         redraw_soon()
     elif entry.error:
         text.error(layout, context, entry.error)
@@ -62,7 +65,7 @@ def _contents(layout: UILayout, context: Context, path: str) -> None:
 
 def _row(sensor: Any) -> tuple[str, str]:
     name = sensor.site.replace("_", " ")
-    return name, f"{sensor.gravity:.2f} at rest, quality {sensor.quality:.0%}"
+    return name, f"quality {sensor.quality:.0%}, {sensor.gravity:.2f} m/s² at rest"
 
 
 CLASSES = (SPARSEMOCAP_PT_calibration,)

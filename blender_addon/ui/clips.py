@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The clips of the opened motion database in the sidebar."""
+"""The clips of the motion database in the sidebar."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ROWS = 6
 
 
 class SPARSEMOCAP_UL_clips(UIList):
-    """One line a clip: name, actor, seconds."""
+    """One line for each clip: name, actor, seconds."""
 
     bl_idname = "SPARSEMOCAP_UL_clips"
 
@@ -34,7 +34,7 @@ class SPARSEMOCAP_UL_clips(UIList):
         active_property: str,
         index: int,
     ) -> None:
-        """The line of the clip at that index."""
+        """Draw the clip at that index."""
         database = opened_database(context)
         if database is None or index >= len(database.clips.rows):
             return
@@ -48,7 +48,7 @@ class SPARSEMOCAP_UL_clips(UIList):
     def filter_items(
         self, context: Context, data: Any, propname: str
     ) -> tuple[list[int], list[int]]:
-        """Which clips are listed and in which order; looked up, not computed, at each redraw."""
+        """Which clips are listed and in which order; cached, since this runs at every redraw."""
         database = opened_database(context)
         if database is None or not is_listed(context, database):
             return [], []
@@ -69,11 +69,11 @@ class SPARSEMOCAP_PT_clips(StepPanel, Panel):
 
     @classmethod
     def poll(cls, context: Context) -> bool:
-        """Only when a database is opened."""
+        """Only when a database is open."""
         return not missing_reason() and opened_database(context) is not None
 
     def draw(self, context: Context) -> None:
-        """The list, and what can be done with the marked clip."""
+        """The list, and the buttons for the selected clip."""
         database = opened_database(context)
         if not is_listed(context, database):
             self.layout.label(text="Listing the clips", icon="SORTTIME")
@@ -88,10 +88,10 @@ class SPARSEMOCAP_PT_clips(StepPanel, Panel):
         self.layout.template_list(
             SPARSEMOCAP_UL_clips.bl_idname, "", shown, "items", shown, "index", rows=_ROWS
         )
-        _draw_marked(self.layout, context, database)
+        _draw_selected(self.layout, context, database)
 
 
-def _draw_marked(layout: UILayout, context: Context, database: Database) -> None:
+def _draw_selected(layout: UILayout, context: Context, database: Database) -> None:
     index = clip_list(context).index
     if index >= len(database.clips.rows):
         return
@@ -106,7 +106,7 @@ def _draw_marked(layout: UILayout, context: Context, database: Database) -> None
     row = layout.row(align=True)
     row.operator("sparse_mocap.fit_preview_range", icon="PREVIEW_RANGE")
     row.operator("sparse_mocap.keep_preview", icon="CHECKMARK")
-    text.paragraph(layout, context, f"In the viewport: {name}")
+    text.paragraph(layout, context, f"Previewing {name}")
 
 
 def _fill() -> None:

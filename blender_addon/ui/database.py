@@ -14,7 +14,7 @@ from ..session.database import BUILDING, databases, default_output, last_build
 from . import text
 from .step import StepPanel, action_button, job_is_running, redraw_soon, tick
 
-_MOST_SHOWN = 3  # files that were left out
+_MOST_SHOWN = 3  # skipped files
 
 
 class SPARSEMOCAP_PT_database(StepPanel, Panel):
@@ -25,7 +25,7 @@ class SPARSEMOCAP_PT_database(StepPanel, Panel):
     bl_order = 1
 
     def draw(self, context: Context) -> None:
-        """The file, and what is in it."""
+        """The file, and its content."""
         if missing_reason():
             text.error(self.layout, context, missing_reason())
             return
@@ -42,14 +42,14 @@ class SPARSEMOCAP_PT_database(StepPanel, Panel):
         _build_form(self.layout, context, settings, is_first=not settings.database)
 
     def draw_header_preset(self, context: Context) -> None:
-        """A tick when the step is done."""
+        """A check mark when the step is done."""
         tick(self.layout, databases, bpy.path.abspath(settings_of(context.scene).database))
 
 
 def _build_form(
     layout: UILayout, context: Context, settings: SPARSEMOCAP_PG_settings, *, is_first: bool
 ) -> None:
-    """A new database from motion files: folded away once there is one."""
+    """A new database from motion files; folded once a database is chosen."""
     box = layout.box()
     is_open = is_first or settings.is_build_open or job_is_running(BUILDING)
     row = box.row()
@@ -75,10 +75,10 @@ def _build_form(
     column.use_property_decorate = False
     for name, label in (("mirror", "Mirrored"), ("reverse", "Reversed"), ("tempos", "Tempos")):
         column.prop(settings, name, text=label)
-    column.prop(settings, "strict", text="Strict")
+    column.prop(settings, "strict")
     if settings.source and not settings.output:
         path = default_output(bpy.path.abspath(settings.source))
-        text.paragraph(box, context, f"Writes {path}")
+        text.paragraph(box, context, f"Will be saved as {path}")
     action_button(
         box,
         "sparse_mocap.build_database",
@@ -89,7 +89,7 @@ def _build_form(
 
 
 def _sources(column: UILayout, settings: SPARSEMOCAP_PG_settings) -> None:
-    """The folders and files that the database is built from."""
+    """The folders and files to build the database from."""
     column.prop(settings, "source")
     for index, item in enumerate(settings.more_sources):
         row = column.row(align=True)
@@ -100,13 +100,13 @@ def _sources(column: UILayout, settings: SPARSEMOCAP_PG_settings) -> None:
 
 
 def _outcome(layout: UILayout, context: Context) -> None:
-    """What the last build left out, if it made the database in use."""
+    """What the last build skipped, if it made the database in use."""
     summary = last_build[0] if last_build else None
     path = bpy.path.abspath(settings_of(context.scene).database)
     if summary is None or summary.path != path or not (summary.skipped or summary.warnings):
         return
     box = layout.box()
-    counts = [(len(summary.skipped), "left out"), (len(summary.warnings), "warnings")]
+    counts = [(len(summary.skipped), "skipped"), (len(summary.warnings), "warnings")]
     line = ", ".join(f"{count} {what}" for count, what in counts if count)
     text.paragraph(box, context, f"{summary.num_files} files: {line}", icon="INFO")
     for name, reason in summary.skipped[:_MOST_SHOWN]:

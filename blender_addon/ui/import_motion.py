@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The import dialog's options, the entries of File > Import and what may be dropped on a view."""
+"""The import dialog's options, the entries of File > Import and drag and drop."""
 
 from __future__ import annotations
 
@@ -11,35 +11,39 @@ from bpy.types import Context, UILayout
 
 from ..scene import compat
 from ..session.core import missing_reason
-from ..session.imported import USUAL_SIZES_M, Glance, glances
+from ..session.imported import USUAL_SIZES_M, FileSummary, file_summaries
 from . import text
 from .step import redraw_soon
 
 UNITS = (
-    ("FILE", "From the file", "What an .asf says; centimetres for .bvh, which says nothing"),
-    ("CM", "Centimetres", "100 units are a metre"),
-    ("M", "Metres", "A unit is a metre"),
-    ("DM", "Decimetres", "10 units are a metre, as MakeHuman has it"),
-    ("MM", "Millimetres", "1000 units are a metre"),
-    ("INCH", "Inches", "A unit is 2.54 cm"),
-    ("CMU", "Inches / 0.45", "A unit is 5.64 cm, as the CMU and HDM05 databases have it"),
+    (
+        "FILE",
+        "From the file",
+        "The unit stored in an .asf; centimetres for .bvh, which stores none",
+    ),
+    ("CM", "Centimetres", "100 units are one metre"),
+    ("M", "Metres", "1 unit is one metre"),
+    ("DM", "Decimetres", "10 units are one metre, as in MakeHuman"),
+    ("MM", "Millimetres", "1000 units are one metre"),
+    ("INCH", "Inches", "1 unit is 2.54 cm"),
+    ("CMU", "Inches / 0.45", "1 unit is 5.64 cm, as in the CMU and HDM05 databases"),
 )
 UP_AXES = (
-    ("Y", "Y", "As most motion files have it"),
-    ("Z", "Z", "As Blender has it"),
-    ("X", "X", ""),
+    ("Y", "Y", "Y points up, as in most motion files"),
+    ("Z", "Z", "Z points up, as in Blender"),
+    ("X", "X", "X points up"),
 )
 _UNITS_M = {"CM": 0.01, "M": 1.0, "DM": 0.1, "MM": 0.001, "INCH": 0.0254, "CMU": 0.0254 / 0.45}
 _DROPPED = (("bvh", "Motion Capture BVH", ".bvh"), ("acclaim", "Acclaim", ".asf;.amc"))
 
 
 def unit_m(unit: str) -> float | None:
-    """How many metres that is; None: what the file says."""
+    """The unit in metres; None: the unit stored in the file."""
     return _UNITS_M.get(unit)
 
 
 def draw_options(operator: Any, context: Context) -> None:
-    """The options of an import operator, and what they make of the file."""
+    """The options of an import operator, and the file's size with them."""
     layout = operator.layout
     layout.use_property_split = True
     layout.use_property_decorate = False
@@ -58,13 +62,13 @@ def draw_options(operator: Any, context: Context) -> None:
     column.use_property_split = False
     column.prop(operator, "keep_timing")
     column.prop(operator, "standard_skeleton")
-    path = _path_in_sight(operator, context)
+    path = _shown_path(operator, context)
     if path.lower().endswith(operator.endings):
-        _draw_glance(layout, context, path, unit_m(operator.unit), operator)
+        _draw_summary(layout, context, path, unit_m(operator.unit), operator)
 
 
-def _path_in_sight(operator: Any, context: Context) -> str:
-    """The file that is marked in the file browser, else the first that was dropped."""
+def _shown_path(operator: Any, context: Context) -> str:
+    """The selected file in the file browser, else the first dropped file."""
     parameters = getattr(context.space_data, "params", None)
     if parameters is not None and hasattr(parameters, "filename"):
         folder = parameters.directory
@@ -73,27 +77,29 @@ def _path_in_sight(operator: Any, context: Context) -> str:
     return next(iter(operator.paths()), "")
 
 
-def _draw_glance(
+def _draw_summary(
     layout: UILayout, context: Context, path: str, unit: float | None, operator: Any
 ) -> None:
-    entry = glances.peek(path)
+    entry = file_summaries.peek(path)
     if entry.is_opening:
         layout.label(text="Reading the file", icon="SORTTIME")
         redraw_soon()
     elif entry.error:
         text.error(layout, context, entry.error)
     else:
-        glance: Glance = entry.value
-        size_m = glance.size_with(unit)
-        rows = [("Joints", str(glance.num_joints))]
-        if glance.num_frames > 0:
-            rate_hz = getattr(operator, "amc_rate_hz", glance.rate_hz)
-            rows.append(("Frames", f"{glance.num_frames:,}"))
-            rows.append(("Length", text.duration((glance.num_frames - 1) / rate_hz)))
+        summary: FileSummary = entry.value
+        size_m = summary.size_with(unit)
+        rows = [("Joints", str(summary.num_joints))]
+        if summary.num_frames > 0:
+            rate_hz = getattr(operator, "amc_rate_hz", summary.rate_hz)
+            rows.append(("Frames", f"{summary.num_frames:,}"))
+            rows.append(("Length", text.duration((summary.num_frames - 1) / rate_hz)))
         rows.append(("Size", f"{size_m:.3g} m"))
         text.facts(layout, rows)
         if not USUAL_SIZES_M[0] <= size_m <= USUAL_SIZES_M[1]:
-            text.paragraph(layout, context, "No person's size: is the unit right?", icon="ERROR")
+            text.paragraph(
+                layout, context, "This is not the size of a person: check the unit", icon="ERROR"
+            )
 
 
 def draw_menu(menu: Any, _: Context) -> None:
@@ -111,14 +117,14 @@ _handlers = [
 
 
 def register() -> None:
-    """Show the entries and take what is dropped."""
+    """Add the menu entries and the drag and drop handlers."""
     bpy.types.TOPBAR_MT_file_import.append(draw_menu)
     for handler in _handlers:
         bpy.utils.register_class(handler)
 
 
 def unregister() -> None:
-    """Take both away."""
+    """Remove both."""
     for handler in _handlers:
         bpy.utils.unregister_class(handler)
     bpy.types.TOPBAR_MT_file_import.remove(draw_menu)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Real sensors in the sidebar. Only what is known already is drawn."""
+"""Real sensors in the sidebar. Drawing never waits for a device."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from ..session import live, sensors
 from ..session.calibrating import CALIBRATING
 from ..session.core import missing_reason
 from ..session.live import LiveSession, LiveState
-from ..session.surroundings import surroundings
+from ..session.match import match_of
+from ..session.port_scanner import port_scanner
 from . import text
 from .step import StepPanel, action_button, job_is_running, redraw_soon
 
@@ -18,7 +19,7 @@ _ICONS = {"live": "RADIOBUT_ON", "silent": "RADIOBUT_OFF"}
 
 
 class SPARSEMOCAP_PT_live(StepPanel, Panel):
-    """The sensors that are connected, or how to connect some."""
+    """The connected sensors, or the settings to connect them."""
 
     bl_idname = "SPARSEMOCAP_PT_live"
     bl_label = "Live Sensors"
@@ -27,24 +28,24 @@ class SPARSEMOCAP_PT_live(StepPanel, Panel):
 
     @classmethod
     def poll(cls, context: Context) -> bool:
-        """Only where it can be done."""
+        """Only when the core is installed."""
         return not missing_reason()
 
     def draw_header_preset(self, context: Context) -> None:
-        """Whether something is being recorded, also while the panel is closed."""
+        """A mark while recording, visible even when the panel is closed."""
         session = live.current()
         if session is not None and session.is_running:
             is_recording = session.state.recording is not None
         else:
-            captures = surroundings.peek().captures
+            captures = port_scanner.latest().captures
             is_recording = any(found.recording_s is not None for found in captures)
-            if surroundings.is_looking:
+            if port_scanner.is_scanning:
                 redraw_soon()
         if is_recording:
             self.layout.label(text="", icon="REC")
 
     def draw(self, context: Context) -> None:
-        """The port, or what its sensors do."""
+        """The port settings, or the state of the sensors."""
         session = live.current()
         if session is not None and session.is_running:
             _session(self.layout, context, session)
@@ -56,10 +57,10 @@ class SPARSEMOCAP_PT_live(StepPanel, Panel):
 
 
 def _choices(layout: UILayout, context: Context) -> None:
-    view, settings = surroundings.view, settings_of(context.scene)
-    if view.error:
-        text.error(layout, context, view.error)
-    for found in view.captures:
+    result, settings = port_scanner.result, settings_of(context.scene)
+    if result.error:
+        text.error(layout, context, result.error)
+    for found in result.captures:
         box = layout.box()
         text.paragraph(
             box, context, found.text, icon="INFO" if found.recording_s is None else "REC"
@@ -68,7 +69,7 @@ def _choices(layout: UILayout, context: Context) -> None:
     row = layout.row(align=True)
     row.prop(settings, "port", icon="PLUGIN")
     row.operator("sparse_mocap.find_sensors", text="", icon="FILE_REFRESH")
-    known = next((port for port in view.ports if port.port == settings.port), None)
+    known = next((port for port in result.ports if port.port == settings.port), None)
     if known is not None and known.description:
         text.paragraph(layout, context, known.description)
     column = layout.column()
@@ -92,8 +93,8 @@ def _session(layout: UILayout, context: Context, session: LiveSession) -> None:
         return
     for link in state.links:
         if link["state"] != "streaming" or link["message"]:
-            said = link["message"] or f"{link['port']}: {link['state']}"
-            text.paragraph(layout, context, said, icon="INFO")
+            message = link["message"] or f"{link['port']}: {link['state']}"
+            text.paragraph(layout, context, message, icon="INFO")
     _sensors(layout, state)
     _live(layout, context, session)
     if not job_is_running(CALIBRATING):
@@ -108,10 +109,10 @@ def _sensors(layout: UILayout, state: LiveState) -> None:
         name = str(sensor["site"] or sensor["name"]).replace("_", " ")
         split.label(text=name, icon=_ICONS.get(sensor["state"], "ERROR"))
         lost = f", {sensor['missing']} lost" if sensor["missing"] else ""
-        silent = "silent" if sensor["state"] != "live" else f"{sensor['rate_hz']:.0f} Hz"
-        split.label(text=silent + lost)
+        rate = "no data" if sensor["state"] != "live" else f"{sensor['rate_hz']:.0f} Hz"
+        split.label(text=rate + lost)
     if not state.sensors:
-        column.label(text="No sensor is heard yet", icon="SORTTIME")
+        column.label(text="Waiting for data", icon="SORTTIME")
 
 
 def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
@@ -123,19 +124,21 @@ def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
         row.operator("sparse_mocap.leave_live", icon="PAUSE", depress=True)
     else:
         is_ready = has_database and bool(state.sensors)
-        action_button(layout, "sparse_mocap.go_live", "PLAY", sensors.GOING_LIVE, is_ready=is_ready)
+        action_button(
+            layout, "sparse_mocap.go_live", "PLAY", sensors.STARTING_LIVE, is_ready=is_ready
+        )
         if not has_database:
             text.paragraph(layout, context, "Choose a motion database first", icon="INFO")
     if state.warning and session.is_live_wanted:
         text.error(layout, context, state.warning)
     if session.is_live_wanted and quality.num_poses:
         rows = [
-            ("Misfit", f"{quality.misfit_mps2:.2f} m/s²"),
-            ("Latency", f"{1e3 * quality.latency_s:.0f} ms"),
+            ("Match", match_of(quality.misfit_mps2)),
+            ("Delay", f"{1e3 * quality.latency_s:.0f} ms"),
         ]
         dropped = quality.num_skipped + state.num_dropped
         if dropped:
-            rows.append(("Not shown", f"{dropped} poses"))
+            rows.append(("Skipped", f"{dropped} poses"))
         text.facts(layout, rows)
 
 
@@ -146,13 +149,13 @@ def _recording(layout: UILayout, context: Context, state: LiveState) -> None:
         row.operator("sparse_mocap.record_take", icon="REC")
     else:
         action_button(
-            layout, "sparse_mocap.stop_take", "SNAP_FACE", sensors.STOPPING, is_ready=True
+            layout, "sparse_mocap.stop_take", "SNAP_FACE", sensors.SAVING_TAKE, is_ready=True
         )
         text.paragraph(
             layout,
             context,
             f"Recording: {text.duration(state.recording['seconds'])}. "
-            "It goes on even if Blender ends",
+            "It continues even if Blender quits",
             icon="REC",
         )
     _last_take(layout, context)
@@ -160,7 +163,7 @@ def _recording(layout: UILayout, context: Context, state: LiveState) -> None:
 
 def _last_take(layout: UILayout, context: Context) -> None:
     if sensors.last_takes:
-        text.paragraph(layout, context, f"Kept: {sensors.last_takes[0]}", icon="FILE_TICK")
+        text.paragraph(layout, context, f"Saved: {sensors.last_takes[0]}", icon="FILE_TICK")
 
 
 CLASSES = (SPARSEMOCAP_PT_live,)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The last imported skeleton in the sidebar: which of its joints is which."""
+"""The mapping of the last imported skeleton in the sidebar."""
 
 from bpy.types import Context, Panel
 
@@ -11,7 +11,7 @@ from .step import StepPanel
 
 
 class SPARSEMOCAP_PT_mapping(StepPanel, Panel):
-    """The mapping, to be looked through and mended."""
+    """The mapping, to check and correct."""
 
     bl_idname = "SPARSEMOCAP_PT_mapping"
     bl_label = "Skeleton Mapping"
@@ -20,11 +20,11 @@ class SPARSEMOCAP_PT_mapping(StepPanel, Panel):
 
     @classmethod
     def poll(cls, context: Context) -> bool:
-        """Only when a skeleton is at hand."""
+        """Only after a file was imported."""
         return not missing_reason() and bool(last_mapped)
 
     def draw(self, context: Context) -> None:
-        """One row a standard joint."""
+        """One row for each joint of the standard skeleton."""
         layout, rows, last = self.layout, mapping_of(context), last_mapped[0]
         text.paragraph(layout, context, f"Joints of {last.name}:")
         if last.problem:

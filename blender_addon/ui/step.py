@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the panels of all steps share."""
+"""Shared by the panels of all steps."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from bpy.types import UILayout
 
 from ..scene import compat
 from ..session import job as jobs
+from ..session.file_cache import FileCache
 from ..session.job import Job
-from ..session.opened import Shelf
 
 _REDRAW_S = 0.1
 
@@ -27,14 +27,14 @@ class StepPanel:
     bl_category = "Sparse Mocap"
 
 
-def tick(layout: UILayout, shelf: Shelf[Any], path: str) -> None:
-    """Show in a step's header that its file is there."""
-    if path and shelf.peek(path).value is not None:
+def tick(layout: UILayout, cache: FileCache[Any], path: str) -> None:
+    """Show a check mark in a step's header when its file is loaded."""
+    if path and cache.peek(path).value is not None:
         layout.label(text="", icon="CHECKMARK")
 
 
 def job_is_running(label: str) -> bool:
-    """Whether the job of that label is at work."""
+    """Whether the job with that label is running."""
     job = jobs.current()
     return job is not None and job.label == label
 
@@ -42,7 +42,7 @@ def job_is_running(label: str) -> bool:
 def action_button(
     layout: UILayout, operator: str, icon: str, job_label: str, *, is_ready: bool
 ) -> None:
-    """The step's main button, or the progress of what it started in its place."""
+    """The step's main button, replaced by the progress while its job runs."""
     job = jobs.current()
     if job is not None and job_is_running(job_label):
         _progress(layout, job)
@@ -58,30 +58,30 @@ def _progress(layout: UILayout, job: Job) -> None:
     row.scale_y = 1.5
     percent = f"{job.fraction:.0%}"
     if job.is_cancelled:
-        row.label(text="Stopping", icon="SORTTIME")
+        row.label(text="Cancelling", icon="SORTTIME")
     elif compat.HAS_PROGRESS_BAR:
         row.progress(factor=job.fraction, text=percent)
     else:
         row.label(text=percent, icon="SORTTIME")
     row.operator("sparse_mocap.cancel", text="", icon="X")
     what = job.what if job.what.lower() not in job.label.lower() else ""
-    layout.label(text=what or f"{job.label}: Esc cancels")
+    layout.label(text=what or f"{job.label}: press Esc to cancel")
 
 
 def redraw_soon() -> None:
-    """Draw the panels anew in a moment: a file is still being opened."""
+    """Redraw the panels shortly, while a file is still being opened."""
     later(_nothing)
 
 
 def later(change: Callable[[], None]) -> None:
-    """Do what drawing must not do, in a moment, and draw the panels anew then."""
+    """Make a change that drawing must not make, shortly after, and redraw the panels."""
     _changes.add(change)
     if not bpy.app.timers.is_registered(_redraw):
         bpy.app.timers.register(_redraw, first_interval=_REDRAW_S)
 
 
 def forget_timers() -> None:
-    """Leave no timer behind."""
+    """Remove the timer."""
     _changes.clear()
     if bpy.app.timers.is_registered(_redraw):
         bpy.app.timers.unregister(_redraw)

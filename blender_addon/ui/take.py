@@ -22,11 +22,11 @@ class SPARSEMOCAP_PT_take(StepPanel, Panel):
 
     @classmethod
     def poll(cls, context: Context) -> bool:
-        """Only where it can be done."""
+        """Only when the core is installed."""
         return not missing_reason()
 
     def draw(self, context: Context) -> None:
-        """The file, and what is in it."""
+        """The file, and its content."""
         settings = settings_of(context.scene)
         row = self.layout.row(align=True)
         row.prop(settings, "take", text="")
@@ -34,19 +34,17 @@ class SPARSEMOCAP_PT_take(StepPanel, Panel):
         if settings.take:
             _contents(self.layout, context, bpy.path.abspath(settings.take))
         else:
-            text.paragraph(
-                self.layout, context, "Load what the sensors recorded (.csv)", icon="INFO"
-            )
+            text.paragraph(self.layout, context, "Load a recorded take (.csv)", icon="INFO")
 
     def draw_header_preset(self, context: Context) -> None:
-        """A tick when the step is done."""
+        """A check mark when the step is done."""
         tick(self.layout, takes, bpy.path.abspath(settings_of(context.scene).take))
 
 
 def _contents(layout: UILayout, context: Context, path: str) -> None:
     entry = takes.peek(path)
     if entry.is_opening:
-        layout.label(text="Reading the take", icon="SORTTIME")
+        layout.label(text="Loading the take", icon="SORTTIME")
         redraw_soon()
     elif entry.error:
         text.error(layout, context, entry.error)

@@ -13,7 +13,7 @@ _ICON_PX = 24.0
 
 
 def paragraph(layout: UILayout, context: Context, text: str, icon: str = "NONE") -> None:
-    """Show the text over as many lines as the sidebar's width asks for."""
+    """Show the text, wrapped to the width of the sidebar."""
     scale = context.preferences.system.ui_scale
     width = context.region.width / scale if context.region is not None else 260.0
     room = width - _MARGIN_PX - (0.0 if icon == "NONE" else _ICON_PX)
@@ -28,7 +28,7 @@ def paragraph(layout: UILayout, context: Context, text: str, icon: str = "NONE")
 
 
 def error(layout: UILayout, context: Context, text: str) -> None:
-    """Show what is wrong."""
+    """Show an error."""
     box = layout.box()
     box.alert = True
     paragraph(box, context, text, icon="ERROR")
@@ -45,15 +45,15 @@ def facts(layout: UILayout, rows: list[tuple[str, str]]) -> None:
 
 
 def shortened(text: str, num_characters: int = 120) -> str:
-    """The text, cut off where it is too long for a panel."""
+    """The text, shortened to fit into a panel."""
     return textwrap.shorten(text, num_characters, placeholder=" ...")
 
 
 def size(num_bytes: int) -> str:
-    """A file's size for people."""
+    """A file size in MB or GB."""
     return f"{num_bytes / 1e6:.1f} MB" if num_bytes < 1e9 else f"{num_bytes / 1e9:.2f} GB"
 
 
 def duration(seconds: float) -> str:
-    """A duration for people."""
+    """A duration in s or min."""
     return f"{seconds:.1f} s" if seconds < 120.0 else f"{seconds / 60.0:.1f} min"

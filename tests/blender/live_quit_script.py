@@ -19,7 +19,7 @@ import blender_addon  # noqa: E402 - found by the lines above
 from blender_addon.session import live, sensors  # noqa: E402
 
 blender_addon.register()
-live.begin(sensors.connecting(sensors.Port(PORT, DRIVER, options=OPTIONS), Path(FOLDER)))
+live.begin(sensors.new_session(sensors.Port(PORT, DRIVER, options=OPTIONS), Path(FOLDER)))
 session = live.current()
 until(lambda: session.state.error or session.state.is_connected)
 assert not session.state.error, session.state.error

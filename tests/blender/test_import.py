@@ -243,7 +243,7 @@ def test_a_second_root_is_left_out_and_said(tmp_path):
     assert len(armature.data.bones) == 7
     (loaded,) = (
         addon("session.imported")
-        .import_job([str(path)], (".bvh",), addon("session.imported").Reading())
+        .import_job([str(path)], (".bvh",), addon("session.imported").ImportOptions())
         .run()
     )
     assert any("ROOT" in warning for warning in loaded.warnings)
@@ -344,7 +344,9 @@ def test_closing_halfway_leaves_nothing(tmp_path):
     bpy.context.scene.collection.objects.link(mesh)
     bpy.context.view_layer.objects.active = mesh
     imported = addon("session.imported")
-    motions = [imported.load_motion(str(_bvh(tmp_path)), imported.Reading()) for _ in range(2)]
+    motions = [
+        imported.load_motion(str(_bvh(tmp_path)), imported.ImportOptions()) for _ in range(2)
+    ]
     before = contents()
     steps = addon("scene.imported").import_steps(bpy.context, motions, 1.0, keeps_timing=True)
     while len(bpy.data.actions) < 2:

@@ -188,10 +188,10 @@ def test_unregister_leaves_a_recording_which_is_found_again(tmp_path):
         time.sleep(3.0)  # longer than a capture lingers
         assert is_alive(capture.pid)
         blender_addon.register()
-        around = addon("session.surroundings").surroundings
-        around.peek()
-        around.wait(10)
-        assert around.view.captures[0].recording_s > 0.0
+        scanner = addon("session.port_scanner").port_scanner
+        scanner.latest()
+        scanner.wait(10)
+        assert scanner.result.captures[0].recording_s > 0.0
         assert bpy.ops.sparse_mocap.attach_sensors(pid=capture.pid) == {"FINISHED"}
         session = addon("session.live").current()
         until(lambda: session.state.recording is not None)

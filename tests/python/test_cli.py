@@ -70,8 +70,8 @@ def test_build_says_what_it_left_out(cli: Cli, library: Path, tmp_path: Path) ->
     arguments = ("database", "build", library, broken, "-o", tmp_path / "db.smdb")
     result = cli(*arguments)
     assert result.exit_code == 0
-    assert "1 left out" in result.stdout
-    assert f"warning: left out: {broken}:2" in result.stderr
+    assert "1 skipped" in result.stdout
+    assert f"warning: skipped: {broken}:2" in result.stderr
     (tmp_path / "db.smdb").unlink()
     strict = cli(*arguments, "--strict")
     assert strict.exit_code == 1

@@ -205,7 +205,7 @@ def test_a_mapping_by_hand_is_remembered_until_it_is_forgotten(
     assert after.found_by == "hand"
     assert after.mapping is not None
     assert after.mapping.joints["head"] == mapping["joints"]["thorax"]
-    assert any("mapped by hand" in warning for warning in after.warnings)
+    assert any("using the mapping remembered" in warning for warning in after.warnings)
     cli("inspect", strange, "--forget")
     assert inspect_motion(strange).found_by == "shape"
 
@@ -243,7 +243,7 @@ def test_inspect_shows_refusals_and_draws_a_sheet(cli: Cli, library: Path, tmp_p
     (folder / good.name).write_bytes(good.read_bytes())
     sheet, report = tmp_path / "sheet.png", tmp_path / "report.json"
     shown = cli("inspect", folder, "--plot", sheet, "--json", report).output
-    assert "refused" in shown
+    assert "rejected" in shown
     assert good.name in shown
     assert sheet.read_bytes().startswith(b"\x89PNG")
     described = {Path(row["path"]).name: row for row in json.loads(report.read_text())}

@@ -184,8 +184,8 @@ def test_a_take_comes_back_as_it_was(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("a,b,c\n1,2,3\n", "begins with 'a,b,c'"),
-        ("", "known are"),
+        ("a,b,c\n1,2,3\n", "starts with 'a,b,c'"),
+        ("", "supported are"),
         (PHYPHOX + "\n0,0,0\n", ":2: expected 4 cells"),
         (PHYPHOX + "\n0,0,x,0\n", ":2: Acceleration y .* is 'x'"),
         (PHYPHOX + "\n0,0,,0\n", ":2: a value of"),
@@ -205,7 +205,7 @@ def test_the_command_names_sites(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "Raw Data.csv"
     path.write_text(PHYPHOX + "\n0,0,0,9.81\n0.01,0,0,9.81\n")
     out = tmp_path / "take.csv"
-    assert "no site is given" in cli("import", path, "-o", out).output
+    assert "no location given" in cli("import", path, "-o", out).output
     assert cli("import", path, "-o", out, "--site", "phone=left_ankle").exit_code == 0
     assert read_take(out).sites == ["left_ankle"]
     assert cli("import", path, "-o", out, "--site", "phone=nowhere").exit_code == 2

@@ -64,7 +64,7 @@ def test_datagrams_and_their_answers() -> None:
     parser = StreamParser("slimevr")
     for packet in tracker.hello():
         parser.feed(packet, sender="10.0.0.7:6969")
-    assert parser.take_replies()[0][:13] == b"\x03Hey OVR =D 5"
+    assert parser.pop_replies()[0][:13] == b"\x03Hey OVR =D 5"
     force = [[0.0, 0.0, 9.81], [9.81, 0.0, 1.0]]
     got = [parser.feed(packet, "10.0.0.7:6969") for packet in tracker.encode(0.0, 0, force)]
     np.testing.assert_allclose(np.vstack([g["specific_force"] for g in got]), force, atol=1e-5)

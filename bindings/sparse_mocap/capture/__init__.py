@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Capture from real sensors, in a process of its own that outlives its clients while it records.
+"""Capture from real sensors, in a separate process that keeps recording when its clients end.
 
-A **capture** owns one or several **links** (a serial port or URL, and the driver that speaks
-there). What arrives is on disk at once (raw_log, sample_log). Clients attach, detach and attach
-again; a **recording** is a part of a capture and becomes a take from the raw log alone.
+A **capture** has one or more **links** (a serial port or URL, and the driver for its protocol).
+Everything received is written to disk at once (raw_log, sample_log). Clients attach and detach at
+any time; a **recording** is a part of a capture, converted to a take from the raw log alone.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Loads what is asked for: a client of a capture needs no pyserial."""
+    """Imports names when they are used: a client of a capture does not need pyserial."""
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(importlib.import_module(_HOMES[name], __name__), name)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """``python -m sparse_mocap.capture FOLDER``: the capture process.
 
-FOLDER holds ``config.json`` and gets the logs. The process is started by a client, belongs to no
-terminal and outlives whoever started it while it records.
+FOLDER holds ``config.json`` and receives the logs. The process is started by a client, is detached
+from the terminal and keeps running while it records, even if the client ends.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .server import Server
 
 
 def main(folder: Path) -> int:
-    """Captures until nobody needs it any more."""
+    """Captures until no client is attached and nothing is recorded."""
     config = CaptureConfig.from_json(json.loads((folder / CONFIG_NAME).read_text("utf-8")))
     recorder = Recorder(folder, config)
     server = Server(recorder)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A client of a capture: starts it, attaches to it, follows its samples, lets it go."""
+"""A client of a capture: starts it, attaches to it, reads its samples, detaches."""
 
 from __future__ import annotations
 
@@ -27,19 +27,21 @@ OUTPUT_NAME = "output.log"
 
 
 class CaptureClient:
-    """Attached to a capture process; closing detaches, and the capture ends when it is not needed.
+    """Attached to a capture process; closing detaches, and an unused capture ends.
 
-    Use it from one thread at a time. What it reads it reads from the capture's logs on disk, so a
-    client that was stalled goes on where it was.
+    Use it from one thread at a time. Samples are read from the capture's logs on disk, so a client
+    that was stalled continues where it stopped.
     """
 
     def __init__(self, session: Session, position: int | None = None) -> None:
-        """Attaches; samples are read from that one on (None: from the next that comes)."""
+        """Attaches; position: the first sample to read (None: only new samples)."""
         self.session = session
         try:
             self._connection = Connection(session)
         except (OSError, ValueError) as error:
-            raise CaptureError(f"the capture of process {session.pid} is gone: {error}") from error
+            raise CaptureError(
+                f"the capture process {session.pid} has ended ({error}); start a new one"
+            ) from error
         self._samples = SampleLogReader(Path(session.folder), position or 0)
         if position is None:
             self._samples.seek_end()
@@ -60,12 +62,12 @@ class CaptureClient:
 
     @staticmethod
     def running() -> list[Session]:
-        """The captures that one can attach to, oldest first."""
+        """The running captures, oldest first."""
         return sessions()
 
     @property
     def folder(self) -> Path:
-        """Of the capture's logs."""
+        """The folder of the capture's logs."""
         return Path(self.session.folder)
 
     def status(self) -> dict[str, Any]:
@@ -77,16 +79,16 @@ class CaptureClient:
         return self._samples.read(most)
 
     def skip(self) -> None:
-        """Leaves out what came by now."""
+        """Skips the samples received so far."""
         self._samples.seek_end()
 
     @property
     def position(self) -> int:
-        """The number of the sample that is read next."""
+        """The number of the next sample to read."""
         return self._samples.position
 
     def wait_for_samples(self, timeout_s: float) -> dict[str, Any]:
-        """Waits until every link delivers, and returns the status then.
+        """Waits until every link delivers samples, and returns the status.
 
         Raises CaptureError with the reason of a link that failed, or after the timeout.
         """
@@ -98,28 +100,31 @@ class CaptureClient:
             waiting = [link for link in links if link["state"] != "streaming"]
             if failed or (waiting and time.monotonic() > end):
                 link = (failed or waiting)[0]
-                reason = link["message"] or f"{link['port']}: no sample came in {timeout_s:g} s"
+                reason = (
+                    link["message"]
+                    or f"{link['port']}: no data within {timeout_s:g} s; check sensors and driver"
+                )
                 raise CaptureError(reason)
             if not waiting:
                 return status
             time.sleep(0.05)
 
     def record(self, seconds: float | None = None) -> dict[str, Any]:
-        """Records for so long from now, or until it is stopped, also without clients.
+        """Records for this long from now, or until stopped, even without clients.
 
-        A recording that runs goes on. Returns its number, seconds and samples.
+        A running recording continues. Returns its number, seconds and samples.
         """
         return self._ask("record", seconds=seconds)
 
     def stop_recording(self) -> None:
-        """Ends the recording."""
+        """Stops the recording."""
         self._ask("stop_recording")
 
     def leave(self, *, is_kept: bool = False) -> bool:
-        """Detaches, and returns whether that ended the capture: it waits until it is gone.
+        """Detaches; returns whether that ended the capture, after waiting for its end.
 
-        It goes on while others are attached or something is recorded. is_kept: what was recorded
-        is kept elsewhere by now, so that the folder goes with the capture.
+        It continues while other clients are attached or a recording is running. is_kept: the
+        recording was saved elsewhere, so the capture may remove its folder.
         """
         ends = bool(self._ask("leave", is_kept=is_kept)["ends"])
         self.close()
@@ -128,7 +133,7 @@ class CaptureClient:
         return ends
 
     def stop(self) -> None:
-        """Ends the capture, whoever else is attached, and waits until it is gone."""
+        """Ends the capture, even with other clients, and waits for its end."""
         self._ask("stop")
         self.close()
         self._wait_for_end()
@@ -159,7 +164,7 @@ class CaptureClient:
             return self._connection.ask(request, **arguments)
         except (OSError, ValueError) as error:
             raise CaptureError(
-                f"the capture of process {self.session.pid} ended; what it received is in "
+                f"the capture process {self.session.pid} has ended; what it received is in "
                 f"{self.session.folder}"
             ) from error
 
@@ -176,7 +181,7 @@ def start_capture(config: CaptureConfig, folder: Path) -> CaptureClient:
     folder = folder.absolute()
     folder.mkdir(parents=True, exist_ok=True)
     if any(folder.iterdir()):
-        raise CaptureError(f"{folder}: is not empty; name another folder")
+        raise CaptureError(f"{folder}: the folder is not empty; choose another one")
     write_text(folder / CONFIG_NAME, json.dumps(config.as_json()))
     process = _launched(folder)
     end = time.monotonic() + START_TIMEOUT_S
@@ -187,11 +192,13 @@ def start_capture(config: CaptureConfig, folder: Path) -> CaptureClient:
         time.sleep(0.02)
     process.kill()
     lines = (folder / OUTPUT_NAME).read_text("utf-8", "replace").strip().splitlines()
-    raise CaptureError(f"the capture process did not start: {lines[-1] if lines else 'no answer'}")
+    raise CaptureError(
+        f"the capture process did not start: {lines[-1] if lines else 'no response'}"
+    )
 
 
 def _launched(folder: Path) -> subprocess.Popen[bytes]:
-    """Starts the process so that it belongs to no terminal and to no program's end."""
+    """Starts the process detached, so that it survives the terminal and the client."""
     environment = dict(os.environ)
     here = str(Path(__file__).resolve().parents[2])
     paths = [here, *(path for path in sys.path if path)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a capture is asked to do."""
+"""The configuration of a capture."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ CONFIG_NAME = "config.json"
 
 @dataclass(frozen=True)
 class LinkConfig:
-    """One port and the protocol that is spoken there."""
+    """One port and the driver for the protocol of its sensors."""
 
     port: str
     driver: str
     baud: int = DEFAULT_BAUD
     options: Mapping[str, str] = field(default_factory=dict)
-    """The driver's."""
+    """Options of the driver."""
 
 
 @dataclass(frozen=True)
 class CaptureConfig:
-    """The links of a capture and how it ends."""
+    """The links of a capture and when it ends."""
 
     links: tuple[LinkConfig, ...]
     sites: tuple[str, ...] = ()
-    """Where the sensors are worn, in the order of the capture's sensors; empty: by their names."""
+    """Sensor locations, in the order of the capture's sensors; empty: by the sensors' names."""
     linger_s: float = 5.0
-    """Without a client and without a recording the capture ends after this time."""
+    """The capture ends after this time without clients and recordings."""
     must_record: bool = False
-    """The capture records from the first byte on."""
+    """Record from the first byte on."""
     is_temporary: bool = False
-    """The capture removes its folder when it ends and nothing was recorded."""
+    """Remove the folder at the end if nothing was recorded."""
 
     def as_json(self) -> dict[str, Any]:
-        """As JSON has it."""
+        """As a JSON object."""
         return asdict(self)
 
     @staticmethod

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The devices' protocols, as captures and emulators use them."""
+"""The sensor protocols, for captures and emulators."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .. import start_commands as _start_commands
 from .sample_log import SAMPLE, Samples
 
 DATAGRAM_DRIVERS = ("slimevr",)
-"""On a serial port their datagrams come as [u16 length, big-endian][datagram]."""
+"""On a serial port their datagrams are sent as [u16 length, big-endian][datagram]."""
 
 _USUAL_SITES = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
 _SAME_NAMES = (
@@ -24,7 +24,7 @@ _SAME_NAMES = (
 
 
 def site_order() -> list[str]:
-    """All sites, in the order in which sensors that nobody placed are taken to be worn."""
+    """All sites, in the order in which they are assumed for sensors without a location."""
     return [*_USUAL_SITES, *(site for site in site_names() if site not in _USUAL_SITES)]
 
 
@@ -34,7 +34,7 @@ def make_parser(driver: str, options: Mapping[str, str]) -> StreamParser:
 
 
 def parsed(parser: StreamParser, data: bytes, sender: str = "") -> Samples:
-    """Returns the samples that these bytes or this datagram complete, without time of arrival."""
+    """Returns the samples completed by these bytes or this datagram, without arrival times."""
     columns = parser.feed(data, sender or None)
     samples = np.zeros(len(columns["sensor"]), SAMPLE)
     for name in _SAME_NAMES:
@@ -44,17 +44,17 @@ def parsed(parser: StreamParser, data: bytes, sender: str = "") -> Samples:
 
 
 def start_commands(driver: str, options: Mapping[str, str]) -> tuple[bytes, ...]:
-    """What makes the device send."""
+    """The commands that make the device send."""
     return tuple(_start_commands(driver, **options))
 
 
 def keep_alive_commands(driver: str, options: Mapping[str, str]) -> tuple[bytes, ...]:
-    """What the device wants to hear every second."""
+    """What must be sent to the device every second."""
     return tuple(_keep_alive_commands(driver, **options))
 
 
 class Encoder:
-    """What a device with these sensors sends. Raises ConfigError when it cannot have so many."""
+    """Encodes what a device with these sensors sends. Raises ConfigError for too many sensors."""
 
     def __init__(self, driver: str, sensors: Sequence[str], options: Mapping[str, Any]) -> None:
         self._encoder = StreamEncoder(driver, list(sensors), **options)
@@ -62,7 +62,7 @@ class Encoder:
         self._counter = 0
 
     def hello(self) -> list[bytes]:
-        """What it sends of its own accord when it starts."""
+        """What the device sends when it starts."""
         return [self._framed(packet) for packet in self._encoder.hello()]
 
     def encode(self, time_s: float, samples: Samples) -> list[bytes]:
@@ -78,16 +78,16 @@ class Encoder:
         self._counter += 1
         return [self._framed(packet) for packet in packets]
 
-    def respond(self, asked: bytes) -> bytes:
-        """What it answers."""
-        return bytes(self._encoder.respond(asked))
+    def respond(self, request: bytes) -> bytes:
+        """The device's answer to what a host sent."""
+        return bytes(self._encoder.respond(request))
 
     def _framed(self, packet: bytes) -> bytes:
         return len(packet).to_bytes(2, "big") + packet if self._is_datagram else packet
 
 
 def with_rate(driver: str, options: Mapping[str, Any], rate_hz: float) -> dict[str, Any]:
-    """The options with the sensors' rate, where the driver has such an option and allows it."""
+    """The options with the sensors' rate, if the driver has such an option and allows the rate."""
     wanted = {"rate_hz": f"{rate_hz:g}", **options}
     try:
         StreamParser(driver, **wanted)
@@ -101,7 +101,7 @@ def can_share_a_port(driver: str, sensors: Sequence[str], options: Mapping[str, 
     try:
         Encoder(driver, sensors, options)
     except ConfigError:
-        # With one sensor the reason is another, which is then raised.
+        # If a single sensor fails too, the options are wrong: raises.
         Encoder(driver, sensors[:1], options)
         return False
     return True

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An emulator: pseudo-terminals that speak a device's protocol, fed from a take.
+"""Emulates devices: plays a take over pseudo-terminals in a device's protocol.
 
-It is paced by absolute deadlines from the moment a host opens the port, and never waits for the
-host: like a device's wire, what the host does not fetch is lost. Pseudo-terminals are POSIX's, so
-this does not run on Windows.
+Packets are sent at absolute times, counted from the moment a host opens the port, without waiting
+for the host: as with a real device, what the host does not read in time is lost. Pseudo-terminals
+need POSIX, so this does not work on Windows.
 """
 
 from __future__ import annotations
@@ -25,38 +25,38 @@ from .drivers import Encoder, can_share_a_port, with_rate
 from .errors import CaptureError
 from .sample_log import SAMPLE, Samples
 
-_LONGEST_NAP_S = 0.05
+_LONGEST_SLEEP_S = 0.05
 _DRAIN_S = 2.0
 _GREETING_S = 0.3
-"""What a host asks a device before it lets it measure is asked within this time."""
+"""Time for the commands that a host sends before measuring."""
 
 
 @dataclass(frozen=True)
 class Faults:
-    """What goes wrong; times are in s of the take, and a pair is begin and length."""
+    """Faults to emulate; times are in s of the take, a pair is begin and duration."""
 
     loss: float = 0.0
-    """The part of packets that is never sent."""
+    """Fraction of packets that are not sent."""
     corruption: float = 0.0
-    """The part of bytes that is changed on the way."""
+    """Fraction of bytes that are changed."""
     cut_after_s: float | None = None
     """The device is unplugged."""
     replug_after_s: float | None = None
-    """It comes back so much later, as another pseudo-terminal."""
+    """It is plugged in again this much later, as another pseudo-terminal."""
     stalls: tuple[tuple[float, float], ...] = ()
-    """The device is silent, though plugged in."""
+    """The device sends nothing, though plugged in."""
     resets_s: tuple[float, ...] = ()
-    """The device starts anew: its counters and clock begin at 0."""
+    """The device restarts: its counters and clock start at 0."""
     garbage: tuple[tuple[float, float], ...] = ()
-    """Random bytes come instead, as at a wrong baud rate."""
+    """Random bytes are sent instead, as with a wrong baud rate."""
     is_id_duplicate: bool = False
-    """The second sensor sends under the first one's id."""
+    """The second sensor sends with the first one's id."""
     seed: int = 0
 
 
 @dataclass
 class Line:
-    """One pseudo-terminal and the sensors behind it."""
+    """One pseudo-terminal and its sensors."""
 
     sensors: tuple[int, ...]
     encoder: Encoder
@@ -65,7 +65,7 @@ class Line:
     path: str = ""
 
     def plug_in(self) -> None:
-        """Makes the pseudo-terminal, raw, so that nothing is echoed or changed."""
+        """Creates the pseudo-terminal in raw mode, so that nothing is echoed or changed."""
         import tty
 
         self.master, slave = os.openpty()
@@ -79,7 +79,7 @@ class Line:
             beside.replace(self.link_path)
 
     def unplug(self) -> None:
-        """Takes the pseudo-terminal away."""
+        """Removes the pseudo-terminal."""
         if self.master >= 0:
             os.close(self.master)
             self.master = -1
@@ -95,8 +95,8 @@ class Line:
         return not any(event & select.POLLHUP for _, event in poller.poll(0))
 
     def send(self, data: bytes) -> bool:
-        """Sends what the host has room for; returns False when that was not all."""
-        if not self.is_open():  # a port that nobody has open keeps nothing for later
+        """Sends what fits into the host's buffer; returns False when that was not all."""
+        if not self.is_open():  # a closed port does not buffer
             return True
         try:
             return os.write(self.master, data) == len(data)
@@ -117,7 +117,7 @@ class Line:
 
 @dataclass
 class Emulator:
-    """Plays a take to whoever opens its ports."""
+    """Plays a take to the host that opens its ports."""
 
     take: Take
     driver: str
@@ -125,15 +125,15 @@ class Emulator:
     speed: float = 1.0
     faults: Faults = field(default_factory=Faults)
     link_path: Path | None = None
-    """A symbolic link that is kept at the (first) pseudo-terminal."""
+    """A symbolic link to the (first) pseudo-terminal, kept up to date."""
 
     begin_ns: int = 0
-    """When the take's begin was played, on the machine's monotonic clock; 0: not yet."""
+    """When the take's begin was sent, on this machine's monotonic clock; 0: not yet."""
     is_done: bool = False
     """The whole take was played."""
     num_sent: int = 0
     num_overrun: int = 0
-    """Packets that the host did not fetch in time."""
+    """Packets that the host did not read in time."""
 
     def __post_init__(self) -> None:
         self._start_s = 0.0
@@ -149,15 +149,17 @@ class Emulator:
         ]
 
     def plug_in(self) -> list[str]:
-        """Makes the ports and returns their paths. Raises CaptureError where there are none."""
+        """Creates the ports and returns their paths. Raises CaptureError on Windows."""
         if not hasattr(os, "openpty"):
-            raise CaptureError("this system has no pseudo-terminals; emulate on Linux or macOS")
+            raise CaptureError(
+                "this system has no pseudo-terminals; use the emulator on Linux or macOS"
+            )
         for line in self.lines:
             line.plug_in()
         return [line.path for line in self.lines]
 
     def close(self) -> None:
-        """Takes the ports away."""
+        """Removes the ports."""
         for line in self.lines:
             line.unplug()
 
@@ -166,7 +168,7 @@ class Emulator:
         must_end: Callable[[], bool] = lambda: False,
         replugged: Callable[[list[str]], None] = lambda paths: None,
     ) -> None:
-        """Plays the take once, from the moment a host has opened every port."""
+        """Plays the take once, as soon as a host has opened every port."""
         if not self._wait(lambda: all(line.is_open() for line in self.lines), must_end):
             return
         due = instants(self.take)
@@ -179,7 +181,7 @@ class Emulator:
             if must_end():
                 return
             self._until(self.begin_ns + int(time_s / self.speed * 1e9))
-            if not self._suffer(pending, time_s, must_end, replugged):
+            if not self._apply_faults(pending, time_s, must_end, replugged):
                 return
             self._play(time_s, samples)
         self.is_done = True
@@ -223,14 +225,14 @@ class Emulator:
             for byte in packet
         )
 
-    def _suffer(
+    def _apply_faults(
         self,
         pending: _Pending,
         time_s: float,
         must_end: Callable[[], bool],
         replugged: Callable[[list[str]], None],
     ) -> bool:
-        """Does what goes wrong now, and returns whether the take goes on."""
+        """Applies the faults that are due; returns whether to continue."""
         if pending.is_reset_due(time_s):
             self._restart(time_s)
         if pending.is_cut_due(time_s):
@@ -258,12 +260,12 @@ class Emulator:
             rest_s = (deadline_ns - time.monotonic_ns()) * 1e-9
             if rest_s <= 0.0:
                 return
-            time.sleep(min(rest_s, _LONGEST_NAP_S))
+            time.sleep(min(rest_s, _LONGEST_SLEEP_S))
 
     def _answer(self) -> None:
         for line in self.lines:
-            if line.master >= 0 and (asked := line.received()):
-                answer = line.encoder.respond(asked)
+            if line.master >= 0 and (request := line.received()):
+                answer = line.encoder.respond(request)
                 if answer:
                     line.send(answer)
 
@@ -275,7 +277,7 @@ class Emulator:
         return True
 
     def _drain(self, must_end: Callable[[], bool]) -> None:
-        """Leaves the host time to fetch the last bytes: closing takes them away."""
+        """Gives the host time to read the last bytes, which closing would discard."""
         end = time.monotonic() + _DRAIN_S
         while time.monotonic() < end and not must_end():
             if not any(line.is_open() for line in self.lines):
@@ -286,7 +288,7 @@ class Emulator:
 
 @dataclass
 class _Pending:
-    """The faults of an instant that are still to come."""
+    """The faults that are still to come."""
 
     faults: Faults
     num_resets: int = 0
@@ -318,13 +320,13 @@ def _is_within(time_s: float, spans: Sequence[tuple[float, float]]) -> bool:
 
 
 def period_s(take: Take) -> float:
-    """The time between two samples of the take's fastest sensor."""
+    """The sampling period of the take's fastest sensor."""
     steps = [np.median(np.diff(r.times_s)) for r in take.sensors.values() if len(r.times_s) > 1]
     return float(min(steps, default=0.01))
 
 
 def instants(take: Take) -> list[tuple[float, Samples]]:
-    """The take's samples by when they are due, those of one sampling period together."""
+    """The take's samples in order of time, grouped by sampling period."""
     parts = []
     for index, record in enumerate(take.sensors.values()):
         part = np.zeros(len(record.times_s), SAMPLE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What goes wrong with captures; str() of each is one line: where, what, what to do."""
+"""Errors of captures; str() of each is one line: where, what, what to do."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ class PortError(CaptureError):
 
 
 class LogError(CaptureError):
-    """What arrives cannot be kept, such as for a full disk."""
+    """The log cannot be written, for example because the disk is full."""
 
 
 class RecordingError(CaptureError):
-    """A recording cannot become a take."""
+    """A recording cannot be converted to a take."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A link: one port, opened again whenever it goes away.
+"""A link: one port, opened again whenever its device is unplugged.
 
-One thread reads and stamps, another keeps and decodes what was read.
+One thread reads and adds time stamps, another writes and decodes what was read.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ from .ports import PORT_ERRORS, READ_TIMEOUT_S, PortInfo, device_at, open_port, 
 
 FIRST_BACKOFF_S = 0.1
 LONGEST_BACKOFF_S = 1.0
-"""So that a recording goes on within 2 s of a replug."""
+"""So that a recording continues within 2 s after plugging in again."""
 STALL_S = 1.0
 """Without a sample for this long a link is stalled."""
 REOPEN_S = 5.0
-"""Without a byte for this long the port is opened anew: some adapters hang without an error."""
-PUZZLED_S = 3.0
+"""Without a byte for this long the port is opened again: some adapters hang without an error."""
+UNDECODED_S = 3.0
 """Bytes without a sample for this long mean a wrong driver or baud rate."""
 KEEP_ALIVE_S = 1.0
 LONGEST_READ = 4096
 MOST_WAITING = 10_000
-"""Reads that wait for a disk that does not take them."""
+"""Reads that may wait for a slow disk."""
 
 
 class State(StrEnum):
@@ -47,21 +47,21 @@ class State(StrEnum):
 
 @dataclass(frozen=True)
 class Arrived:
-    """What came of some bytes."""
+    """The result of some bytes."""
 
     num_samples: int = 0
     replies: tuple[bytes, ...] = ()
-    """What the protocol wants answered, and the start commands where the device began anew."""
+    """Answers that the protocol requires, and the start commands if the device restarted."""
 
 
 class Sink(Protocol):
-    """Who takes what a link gets. Called from the link's thread."""
+    """Receives the data of a link. Called from the link's thread."""
 
     def connected(self, link: int, port: str) -> tuple[bytes, ...]:
         """The port was opened; returns the start commands."""
 
     def keep_alive(self, link: int) -> tuple[bytes, ...]:
-        """What the device wants to hear every second."""
+        """What must be sent to the device every second."""
 
     def arrived(self, link: int, arrival_ns: int, data: bytes, sender: str) -> Arrived:
         """Bytes arrived, or a datagram when there is a sender. Raises LogError."""
@@ -74,8 +74,8 @@ class Sink(Protocol):
 class Link:
     """Reads a port in a thread of its own until it is stopped.
 
-    A port that cannot be opened at first fails with a message; one that was open before is tried
-    again for ever, found by its device's numbers under whichever name it returns.
+    A port that cannot be opened at first fails with a message. One that was open before is opened
+    again until that succeeds; its device is found by its serial number, whatever the port's name.
     """
 
     index: int
@@ -111,7 +111,7 @@ class Link:
         while not self._stop.is_set():
             try:
                 port = self._opened()
-                reason = self._served(port)
+                reason = self._handled(port)
                 backoff_s = FIRST_BACKOFF_S
             except PortError as error:
                 reason = str(error)
@@ -120,7 +120,7 @@ class Link:
             except LogError as error:
                 return self._enter(State.FAILED, str(error))
             except Exception as error:
-                # Nobody waits for this thread: what it does not tell is never known.
+                # No other thread waits for this one: report the error here.
                 self._enter(State.FAILED, f"{self.config.port}: {error!r}")
                 raise
             if not self._stop.is_set():
@@ -139,14 +139,14 @@ class Link:
         self._device = self.device_of(name) or self._device
         return port
 
-    def _served(self, port: Any) -> str:
-        """Serves an open port and returns why it ended."""
+    def _handled(self, port: Any) -> str:
+        """Handles an open port and returns why it was closed."""
         try:
             self._enter(State.CONFIGURING)
             self._write(port, self.sink.connected(self.index, self.opened_as))
             return self._read(port)
         except PORT_ERRORS as error:
-            return f"{self.opened_as}: the connection broke ({_short(error)}); plug it in again"
+            return f"{self.opened_as}: the connection was lost ({_short(error)}); plug it in again"
         finally:
             _close(port)
 
@@ -165,7 +165,7 @@ class Link:
         return reason
 
     def _handle(self, port: Any, inbox: SimpleQueue[_Item | Exception]) -> str:
-        last_byte_s = last_sample_s = last_told_s = time.monotonic()
+        last_byte_s = last_sample_s = last_keep_alive_s = time.monotonic()
         while not self._stop.is_set():
             item = _next(inbox)
             if isinstance(item, Exception):
@@ -179,24 +179,24 @@ class Link:
                     last_sample_s = last_byte_s
                     self._enter(State.STREAMING)
             now_s = last_byte_s if item is not None else time.monotonic()
-            if now_s - last_told_s > KEEP_ALIVE_S:
-                last_told_s = now_s
+            if now_s - last_keep_alive_s > KEEP_ALIVE_S:
+                last_keep_alive_s = now_s
                 self._write(port, self.sink.keep_alive(self.index))
             if now_s - last_byte_s > REOPEN_S:
-                return f"{self.opened_as}: nothing came for {REOPEN_S:g} s; is the device on?"
-            self._judge_silence(now_s - last_byte_s, now_s - last_sample_s)
+                return f"{self.opened_as}: no data for {REOPEN_S:g} s; check that the device is on"
+            self._report_silence(now_s - last_byte_s, now_s - last_sample_s)
         return ""
 
-    def _judge_silence(self, without_byte_s: float, without_sample_s: float) -> None:
+    def _report_silence(self, without_byte_s: float, without_sample_s: float) -> None:
         if without_sample_s < STALL_S:
             return
         if self.state is State.STREAMING:
-            self._enter(State.STALLED, f"{self.opened_as}: no sample for {STALL_S:g} s")
-        elif without_sample_s > PUZZLED_S and without_byte_s < STALL_S:
+            self._enter(State.STALLED, f"{self.opened_as}: no data for {STALL_S:g} s")
+        elif without_sample_s > UNDECODED_S and without_byte_s < STALL_S:
             self._enter(
                 self.state,
-                f"{self.opened_as}: bytes come, but no sample of {self.config.driver} is among "
-                f"them; check the driver and the baud rate ({self.config.baud})",
+                f"{self.opened_as}: receiving data, but not in the protocol "
+                f"{self.config.driver}; check the driver and the baud rate ({self.config.baud})",
             )
 
     def _write(self, port: Any, packets: tuple[bytes, ...], receiver: str = "") -> None:
@@ -221,11 +221,11 @@ class _Item:
 
 
 def _fetch(port: Any, inbox: SimpleQueue[_Item | Exception], is_over: threading.Event) -> None:
-    """Does nothing but read: a disk that is busy for a second must not make the wire run over."""
+    """Only reads, so that nothing is lost while the disk is busy for a second."""
     try:
         while not is_over.is_set():
             data = port.read(max(1, min(port.in_waiting, LONGEST_READ)))
-            # A socket tells of one byte at most, however many wait.
+            # For sockets, in_waiting is 1 at most.
             while data and len(data) < LONGEST_READ and (waiting := port.in_waiting):
                 data += port.read(min(waiting, LONGEST_READ - len(data)))
             if data:
@@ -248,7 +248,7 @@ def _next(
 def _close(port: Any) -> None:
     try:
         port.close()
-    except PORT_ERRORS:  # it is gone; what could be freed is freed
+    except PORT_ERRORS:  # the device is gone
         return
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Serial ports: which there are, how one is opened, and how it is found again after a replug."""
+"""Serial ports: list them, open one, and find it again after it was unplugged."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ except ImportError:  # not on Windows
     _TERMIOS_ERRORS = ()
 
 PORT_ERRORS: tuple[type[Exception], ...] = (
-    OSError,  # SerialException is one; in_waiting raises it plainly
+    OSError,  # SerialException is one
     TypeError,  # read() of a port that another thread closed
     AttributeError,  # the same on Windows
     ValueError,  # the same of a socket
-    *_TERMIOS_ERRORS,  # flush() and the like of a port that is gone
+    *_TERMIOS_ERRORS,  # flush() and others after unplugging
 )
-"""What pyserial raises when a device goes away, depending on what it was asked just then."""
+"""What pyserial raises when a device is unplugged, depending on the call."""
 
 READ_TIMEOUT_S = 0.1
 
@@ -50,7 +50,7 @@ class PortInfo:
     location: str | None = None
 
     def is_same_device(self, other: PortInfo) -> bool:
-        """Whether it is the same USB device; by where it is plugged when it has no number."""
+        """Whether it is the same USB device, by serial number or else by USB location."""
         if self.vendor_id is None or (self.vendor_id, self.product_id) != (
             other.vendor_id,
             other.product_id,
@@ -61,7 +61,7 @@ class PortInfo:
         return self.location == other.location
 
     def as_json(self) -> dict[str, Any]:
-        """As JSON has it."""
+        """As a JSON object."""
         return asdict(self)
 
 
@@ -86,7 +86,7 @@ def available_ports() -> list[PortInfo]:
 def device_at(
     port: str, ports: Callable[[], Iterable[PortInfo]] = available_ports
 ) -> PortInfo | None:
-    """The USB device behind a port; None for URLs, pseudo-terminals and what is unknown."""
+    """The USB device of a port; None for URLs, pseudo-terminals and unknown ports."""
     if is_url(port):
         return None
     real = os.path.realpath(port)
@@ -97,12 +97,12 @@ def device_at(
 
 
 def port_of(
-    asked: str, device: PortInfo | None, ports: Callable[[], Iterable[PortInfo]] = available_ports
+    port: str, device: PortInfo | None, ports: Callable[[], Iterable[PortInfo]] = available_ports
 ) -> str:
-    """The name under which the device is to be opened now: it may have changed by a replug."""
+    """The current port name of the device, which may change when it is plugged in again."""
     if device is None:
-        return asked
-    return next((info.port for info in ports() if info.is_same_device(device)), asked)
+        return port
+    return next((info.port for info in ports() if info.is_same_device(device)), port)
 
 
 def is_url(port: str) -> bool:
@@ -120,31 +120,31 @@ def open_port(port: str, baud: int) -> Any:
             write_timeout=None if port.startswith("rfc2217://") else 1.0,  # it knows none
         )  # fmt: skip
     except PORT_ERRORS as error:
-        raise PortError(_told(port, error)) from error
+        raise PortError(_explained(port, error)) from error
 
 
-def _told(port: str, error: Exception) -> str:
+def _explained(port: str, error: Exception) -> str:
     number, text = _error_number(error), str(error)
     if number in (errno.EACCES, errno.EPERM) or "PermissionError" in text:
         if sys.platform == "win32":
-            return f"{port}: another program has the port open, or it may not be used; close that"
+            return f"{port}: access denied; close other programs that use the port"
         return (
-            f"{port}: permission denied; add yourself to the group of the port "
+            f"{port}: permission denied; add yourself to the port's group "
             "(sudo usermod -a -G dialout $USER), then log out and in"
         )
     if number in (errno.ENOENT, errno.ENODEV, errno.ENXIO) or "FileNotFoundError" in text:
-        return f"{port}: there is no such port; plug the device in (`sparse-mocap ports` lists all)"
+        return f"{port}: no such port; plug the device in (`sparse-mocap ports` lists all ports)"
     if number in (errno.EBUSY, errno.EAGAIN, errno.EADDRINUSE):
-        return f"{port}: another program has the port open; close it there"
+        return f"{port}: in use by another program; close that program"
     if number in (errno.ENOTTY, errno.EISDIR, errno.EINVAL):
-        return f"{port}: is no serial port; `sparse-mocap ports` lists them"
+        return f"{port}: not a serial port; `sparse-mocap ports` lists them"
     if number == errno.ECONNREFUSED:
-        return f"{port}: nothing listens there; start what serves the port"
+        return f"{port}: connection refused; start the server for this port"
     return f"{port}: {' '.join(text.split()) or type(error).__name__}"
 
 
 def _error_number(error: Exception) -> int | None:
-    """The system's number of an error, which pyserial often leaves in the text alone."""
+    """The error's errno, which pyserial often has only in the message."""
     number = getattr(error, "errno", None)
     found = re.search(r"\[Errno (-?\d+)\]|: \((\d+), '", str(error))
     if number is None and found:

@@ -1,25 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The raw log: every byte that arrived and when, on disk before anything else is done with it.
+"""The raw log: every received byte with its arrival time, written to disk before decoding.
 
-A file of records behind the 8 bytes ``SMRAWLG1``, whose last is the version. All numbers are
+The 8 bytes ``SMRAWLG1``, whose last is the version, then records. All numbers are
 little-endian::
 
-    2 bytes  F5 4C          begins a record
+    2 bytes  F5 4C          start of a record
     u8       kind           1 bytes of a link, 2 a datagram of a link, 3 an event
-    u8       link           which of the capture's links (0, 1, ...)
+    u8       link           number of the capture's link (0, 1, ...)
     u32      length         of the payload
     i64      arrival        monotonic clock of the machine, nanoseconds
     payload                 bytes | u8 length of the sender's name, name, datagram | JSON, UTF-8
     u32      CRC-32         of everything after the first two bytes
 
-A log may go on in further files (``raw.1.log``, ...), so that the oldest can be given up while
-nothing is recorded. Each begins with what must be known to read it alone: the capture's event and,
-for every link, how its connection began; an event ``begun`` ends that.
+A log may continue in further files (``raw.1.log``, ...), so that the oldest can be deleted while
+nothing is recorded. Each starts with what is needed to read it on its own: the capture's event and,
+for every link, how its connection began; an event ``begun`` ends that part.
 
-A record is handed to the operating system in one write, so that a killed capture loses nothing that
-it had received; the disk is synced about once a second, for the loss of power. What a crash tore at
-the end is no record (its length or checksum is wrong), and reading stops before it. Damage in the
-middle is skipped up to the next record whose checksum holds.
+A record is passed to the operating system in one write, so that a killed capture loses nothing that
+it had received; the disk is synced about once a second, in case of a power failure. An incomplete
+record at the end (its length or checksum is wrong) is ignored. Damage in the middle is skipped up
+to the next record with a valid checksum.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from typing import Any, BinaryIO
 MAGIC = b"SMRAWLG1"
 FILE_NAME = "raw.log"
 BEGUN = "begun"
-"""The event behind what a later file repeats of the earlier ones."""
+"""The event after the part that a later file repeats from the earlier ones."""
 
 _BEGIN = b"\xf5\x4c"
 _HEAD = struct.Struct("<BBIq")
@@ -48,7 +48,7 @@ _LONGEST_PAYLOAD = 1 << 20
 
 
 class Kind(IntEnum):
-    """What a record holds."""
+    """The kind of a record."""
 
     BYTES = 1
     DATAGRAM = 2
@@ -102,7 +102,7 @@ class RawLogWriter:
         self.num_bytes = len(MAGIC)
 
     def append(self, record: Record) -> None:
-        """Appends a record. Raises OSError, such as for a full disk."""
+        """Appends a record. Raises OSError, for example when the disk is full."""
         head = _HEAD.pack(record.kind, record.link, len(record.payload), record.arrival_ns)
         body = head + record.payload
         rest = memoryview(_BEGIN + body + _CHECK.pack(zlib.crc32(body)))
@@ -120,11 +120,11 @@ class RawLogWriter:
         self.append(Record(Kind.EVENT, link, arrival_ns, json.dumps(event).encode()))
 
     def append_datagram(self, link: int, arrival_ns: int, sender: str, datagram: bytes) -> None:
-        """Appends a datagram and who sent it."""
+        """Appends a datagram with its sender."""
         self.append(Record(Kind.DATAGRAM, link, arrival_ns, sent_by(sender, datagram)))
 
     def sync(self) -> None:
-        """Waits until the disk has what was appended."""
+        """Waits until everything is on disk."""
         os.fsync(self._file.fileno())
 
     def close(self) -> None:
@@ -135,9 +135,9 @@ class RawLogWriter:
 
 
 def read_log(folder: Path) -> Iterator[Record]:
-    """Gives the records of all the files of a log that are left, in order.
+    """Yields the records of all remaining files of a log, in order.
 
-    What a file repeats is left out where the file before it was read. Raises as read_records does.
+    Repeated records are skipped if the file before was read. Raises as read_records does.
     """
     found = [re.fullmatch(r"raw\.(\d+)\.log", path.name) for path in folder.glob("raw.*.log")]
     numbers = sorted(int(match[1]) for match in found if match)
@@ -146,14 +146,14 @@ def read_log(folder: Path) -> Iterator[Record]:
         path = log_path(folder, number)
         is_repeated = number == last + 1
         try:
-            if number and path.stat().st_size < len(MAGIC):  # torn at its very begin
+            if number and path.stat().st_size < len(MAGIC):  # its start is incomplete
                 continue
             for record in read_records(path):
                 last = number
                 if not is_repeated:
                     yield record
                 is_repeated = is_repeated and not record.is_event(BEGUN)
-        except FileNotFoundError:  # given up, perhaps just now
+        except FileNotFoundError:  # deleted, perhaps just now
             if not numbers:
                 raise
 
@@ -172,9 +172,9 @@ def check_magic(path: Path, begin: bytes, magic: bytes, what: str) -> None:
 
 
 def read_records(path: Path) -> Iterator[Record]:
-    """Gives the records of a log, also of one that is being written or was torn.
+    """Yields the records of a log, even one that is being written or is incomplete.
 
-    Raises ValueError when the file is no raw log, and OSError.
+    Raises ValueError when the file is not a raw log, and OSError.
     """
     with open(path, "rb") as file:
         check_magic(path, file.read(len(MAGIC)), MAGIC, "raw log")
@@ -194,7 +194,7 @@ def _records(file: BinaryIO) -> Iterator[Record]:
                 break
             at = end
         pending = pending[at:]
-    # A torn record's claimed length may reach over whole records behind it.
+    # The length of an incomplete record may span complete records after it.
     for at in _begins(pending, 1):
         record, _ = _record_at(pending, at)
         if record is not None:
@@ -203,9 +203,9 @@ def _records(file: BinaryIO) -> Iterator[Record]:
 
 
 def _record_at(data: bytes, at: int) -> tuple[Record | None, int]:
-    """Returns the record at ``at`` and its end; no record and where to look next.
+    """Returns the record at ``at`` and its end, or None and where to continue the search.
 
-    The latter is ``at`` itself while more bytes are needed to know.
+    The latter is ``at`` itself while more bytes are needed.
     """
     if not data.startswith(_BEGIN, at):
         begin = data.find(_BEGIN, at)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The heart of a capture: what arrives goes to the raw log, is decoded, and to the sample log."""
+"""The core of a capture: bytes to the raw log, then decoded, then samples to the sample log."""
 
 from __future__ import annotations
 
@@ -16,40 +16,40 @@ import numpy as np
 from .config import CaptureConfig
 from .decoder import Decoder
 from .errors import LogError
-from .kept_log import KeptLog
 from .link import Arrived, Link, State
 from .raw_log import Kind, Record, sent_by
+from .rolling_log import RollingLog
 from .sample_log import SampleLogWriter, Samples
 
 SILENT_S = 0.1
-"""A sensor without a sample for longer than this is silent."""
+"""A sensor without a sample for longer than this is reported as silent."""
 _RATE_WINDOW = 5  # ticks
-_CROWDED = 0.2  # this part of the frames repeated or out of order: two sensors share an id
+_SHARED_ID = 0.2  # if this part of the frames is repeated or out of order, two sensors share an id
 
 
 @dataclass
 class Recording:
-    """A part of the capture that is to become a take."""
+    """A part of the capture that becomes a take."""
 
     number: int
     begin_ns: int
     until_ns: int | None = None
-    """When it ends by itself."""
+    """When it stops by itself."""
     first_sample: int = 0
 
 
 class Recorder:
-    """Takes what the links get, from their threads, and keeps and counts it."""
+    """Receives data from the links' threads, stores and counts it."""
 
     def __init__(self, folder: Path, config: CaptureConfig) -> None:
         self.folder, self.config = folder, config
-        self._raw = KeptLog(
+        self._raw = RollingLog(
             folder, {"event": "capture", "config": config.as_json(), "unix_s": time.time()}
         )
         self._log = SampleLogWriter(folder)
         self._lock = threading.Lock()
         self._decoder = Decoder(config)
-        self._told_sensors = 0
+        self._num_logged_sensors = 0
         self._last: dict[int, Any] = {}
         self._num_of: dict[int, int] = {}
         self._with_gyroscope: set[int] = set()
@@ -57,7 +57,7 @@ class Recorder:
         self.recording: Recording | None = None
         self.num_recordings = 0
         self.may_be_removed = config.is_temporary
-        """Whether nothing in the folder would be missed: nothing was recorded, or it is kept."""
+        """Whether the folder is not needed: nothing was recorded, or it was saved elsewhere."""
         self.links = [Link(index, link, self) for index, link in enumerate(config.links)]
 
     def start(self) -> None:
@@ -83,19 +83,19 @@ class Recorder:
             return self._decoder.connected(link, now_ns)
 
     def keep_alive(self, link: int) -> tuple[bytes, ...]:
-        """What the link's device wants to hear every second."""
+        """What must be sent to the link's device every second."""
         return self._decoder.keep_alive(link)
 
     def changed(self, link: int, state: State, message: str) -> None:
-        """A link's state changed; the log keeps it, since it explains gaps."""
+        """A link's state changed; logged, because it explains gaps."""
         with self._lock:
             try:
                 self._event(link, {"event": "state", "state": state, "message": message})
             except (LogError, ValueError):
-                return  # a full disk or a closed log is told by what else it stops
+                return  # a full disk is reported by arrived()
 
     def arrived(self, link: int, arrival_ns: int, data: bytes, sender: str = "") -> Arrived:
-        """Bytes arrived: they are kept before anything else is done with them."""
+        """Bytes arrived: they are written to the raw log before they are decoded."""
         kind = Kind.DATAGRAM if sender else Kind.BYTES
         record = Record(kind, link, arrival_ns, sent_by(sender, data) if sender else data)
         with self._lock:
@@ -104,17 +104,19 @@ class Recorder:
                 decoded = self._decoder.arrived(link, arrival_ns, data, sender)
                 self._log.append(decoded.samples)
                 has_samples = len(decoded.samples) > 0
-                self._raw.learnt(record, sender, has_samples=has_samples, has_news=decoded.has_news)
+                self._raw.decoded(
+                    record, sender, has_samples=has_samples, has_news=decoded.has_news
+                )
             except OSError as error:
                 raise self._log_error(error) from error
             self._count(decoded.samples)
-            self._tell_new_sensors()
+            self._log_new_sensors()
         return Arrived(len(decoded.samples), decoded.replies)
 
     def tick(self) -> None:
-        """Is called about twice a second.
+        """Called about twice a second.
 
-        Syncs the disk, ends recordings, counts rates, gives up what nobody records.
+        Syncs the disk, stops recordings, counts rates, deletes old files.
         """
         full = None
         with self._lock:
@@ -123,10 +125,10 @@ class Recorder:
                 self._stop_recording()
             self._rates.append((time.monotonic(), dict(self._num_of)))
             if self.recording is None:
-                with suppress(OSError):  # a full disk is told by the link that meets it
-                    full = self._raw.go_on()
-                self._log.give_up()
-        # Outside the lock: a slow disk must not hold up the links.
+                with suppress(OSError):  # a full disk is reported by arrived()
+                    full = self._raw.roll_over()
+                self._log.remove_old()
+        # Outside the lock: a slow disk must not block the links.
         with suppress(OSError, ValueError):
             self._raw.sync()
         if full is not None:
@@ -134,12 +136,12 @@ class Recorder:
                 full.close()
 
     def start_recording(self, seconds: float | None) -> dict[str, Any]:
-        """Records for so long from now, or until it is stopped; a recording that runs goes on."""
+        """Records for this long from now, or until stopped; a running recording continues."""
         with self._lock:
             now = time.monotonic_ns()
             if self.recording is None:
                 self.recording = Recording(self.num_recordings, now, None, self._log.num_samples)
-                self._raw.keep()
+                self._raw.begin_recording()
                 self._event(0, {"event": "recording", "number": self.num_recordings})
                 self.num_recordings += 1
                 self.may_be_removed = False
@@ -147,12 +149,12 @@ class Recorder:
             return self._recording_json()
 
     def stop_recording(self) -> None:
-        """Ends the recording, if one goes on."""
+        """Stops the recording, if there is one."""
         with self._lock:
             self._stop_recording()
 
     def status(self) -> dict[str, Any]:
-        """What the capture is doing, as JSON has it."""
+        """The status of the capture, as a JSON object."""
         with self._lock:
             now_ns = time.monotonic_ns()
             return {
@@ -175,12 +177,12 @@ class Recorder:
             raise self._log_error(error) from error
 
     def _log_error(self, error: OSError) -> LogError:
-        return LogError(f"{self.folder}: {error.strerror or error}; free some space")
+        return LogError(f"{self.folder}: {error.strerror or error}; free some disk space")
 
     def _stop_recording(self) -> None:
         if self.recording is not None:
             self._event(0, {"event": "recording_end", "number": self.recording.number})
-            self._raw.release()
+            self._raw.end_recording()
             self.recording = None
 
     def _recording_json(self) -> dict[str, Any]:
@@ -202,20 +204,20 @@ class Recorder:
             if (np.isfinite(rate) & (rate != 0.0)).any():
                 self._with_gyroscope.add(sensor)
 
-    def _tell_new_sensors(self) -> None:
+    def _log_new_sensors(self) -> None:
         sensors = self._decoder.sensors
-        for index in range(self._told_sensors, len(sensors)):
+        for index in range(self._num_logged_sensors, len(sensors)):
             sensor = sensors[index]
             self._event(sensor.link, {"event": "sensor", "index": index, "name": sensor.name})
-        self._told_sensors = len(sensors)
+        self._num_logged_sensors = len(sensors)
 
     def _link_json(self, link: Link) -> dict[str, Any]:
         counters = self._decoder.counters(link.index)
         frames = counters.get("samples", 0)
-        crowd = counters.get("repeated", 0) + counters.get("out_of_order", 0)
+        suspect = counters.get("repeated", 0) + counters.get("out_of_order", 0)
         message = link.message
-        if not message and frames > 100 and crowd > _CROWDED * (frames + crowd):
-            message = f"{link.opened_as}: two sensors seem to send under one id; change one"
+        if not message and frames > 100 and suspect > _SHARED_ID * (frames + suspect):
+            message = f"{link.opened_as}: two sensors seem to have the same id; change one of them"
         return {
             "port": link.config.port, "opened_as": link.opened_as, "driver": link.config.driver,
             "state": str(link.state), "message": message,
@@ -225,7 +227,7 @@ class Recorder:
 
     def _sensor_json(self, index: int, now_ns: int) -> dict[str, Any]:
         sensor, last = self._decoder.sensors[index], self._last.get(index)
-        told: dict[str, Any] = {
+        status: dict[str, Any] = {
             "name": sensor.name, "site": self._decoder.sites[index], "link": sensor.link,
             "samples": self._num_of.get(index, 0), "missing": sensor.num_missing,
             "rate_hz": self._rate(index), "age_s": None, "specific_force": None,
@@ -233,10 +235,10 @@ class Recorder:
         }  # fmt: skip
         if last is not None:
             age_s = (now_ns - int(last["arrival_ns"])) * 1e-9
-            told["age_s"], told["flags"] = age_s, int(last["flags"])
-            told["specific_force"] = np.round(last["specific_force"], 3).tolist()
-            told["state"] = "silent" if age_s > SILENT_S else "live"
-        return told
+            status["age_s"], status["flags"] = age_s, int(last["flags"])
+            status["specific_force"] = np.round(last["specific_force"], 3).tolist()
+            status["state"] = "silent" if age_s > SILENT_S else "live"
+        return status
 
     def _rate(self, index: int) -> float:
         if not self._rates:

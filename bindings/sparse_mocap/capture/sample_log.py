@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sample log: every decoded sample, in a file that any number of readers follow.
+"""The sample log: every decoded sample, in files that any number of clients can read.
 
-Behind the 8 bytes ``SMSAMPL1``, whose last is the version, stand records of SAMPLE, little-endian
-and all of one size, so that a sample's number is its place and a torn last record is cut by
-counting. After PER_FILE samples the log goes on in the next file (``samples.1.bin``, ...). A reader
-that was stalled goes on where it was; while nothing is recorded, though, the oldest files are given
-up.
+The 8 bytes ``SMSAMPL1``, whose last is the version, are followed by records of SAMPLE,
+little-endian and of equal size, so that a sample's number gives its offset, and an incomplete last
+record is recognised by its size. After PER_FILE samples the log continues in the next file
+(``samples.1.bin``, ...). A reader that was stalled continues where it stopped, unless that file was
+deleted, as old ones are while nothing is recorded.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ FILE_NAME = "samples.bin"
 PER_FILE = 1 << 18
 """Samples in a file: three minutes and a half of six sensors at 200 Hz, 19 MB."""
 MOST_SPARE = 2
-"""So many full files are kept of what nobody records."""
+"""Number of full files kept while nothing is recorded."""
 
 SAMPLE = np.dtype(
     [
@@ -39,7 +39,7 @@ SAMPLE = np.dtype(
         ("orientation", "<f4", 4),  # R_world_sensor, w x y z
     ]
 )
-"""What a sensor read; NaN where it did not say."""
+"""One sample of one sensor; NaN for quantities it does not send."""
 
 Samples = NDArray[np.void]
 
@@ -70,10 +70,10 @@ class SampleLogWriter:
                 rest = rest[self._file.write(rest) :]
             self.num_samples += len(part)
 
-    def give_up(self) -> None:
-        """Removes what is older than the newest full files."""
+    def remove_old(self) -> None:
+        """Deletes all but the newest full files."""
         while self._oldest < self._number - MOST_SPARE:
-            with suppress(OSError):  # somebody reads it, where that forbids to remove it
+            with suppress(OSError):  # on Windows, a file that is being read cannot be removed
                 log_path(self._folder, self._oldest).unlink()
             self._oldest += 1
 
@@ -93,7 +93,7 @@ class SampleLogWriter:
 
 
 class SampleLogReader:
-    """Follows a log from a sample on."""
+    """Reads a log from a given sample on, while it is being written."""
 
     def __init__(self, folder: Path, position: int = 0) -> None:
         self._folder = folder
@@ -103,19 +103,19 @@ class SampleLogReader:
 
     @property
     def num_samples(self) -> int:
-        """How many whole samples there are by now."""
+        """Number of complete samples so far."""
         number = max(self._numbers(), default=0)
         size = log_path(self._folder, number).stat().st_size - len(MAGIC)
         return number * PER_FILE + max(size, 0) // SAMPLE.itemsize
 
     def seek_end(self) -> None:
-        """Goes on with what comes from now on."""
+        """Skips to the end: only new samples are read."""
         self.position = self.num_samples
 
     def read(self, most: int = 100_000) -> Samples:
-        """Returns the next samples, (N,) of SAMPLE, none when there are no more yet.
+        """Returns the next samples, (N,) of SAMPLE; empty when there are no new ones.
 
-        Those that were given up meanwhile are passed over.
+        Samples in deleted files are skipped.
         """
         parts = [np.empty(0, SAMPLE)]
         while most > 0 and self._is_there():
@@ -135,7 +135,7 @@ class SampleLogReader:
         self._file.close()
 
     def _is_there(self) -> bool:
-        """Opens the file of the next sample, or of the oldest that is left when it was given up."""
+        """Opens the file of the next sample, or the oldest one if that was deleted."""
         number = self.position // PER_FILE
         if number == self._number:
             return True
@@ -144,7 +144,7 @@ class SampleLogReader:
             return False
         try:
             self._open(number if number in numbers else min(numbers))
-        except (FileNotFoundError, ValueError):  # given up, or begun, just now
+        except (FileNotFoundError, ValueError):  # just deleted, or just created
             return False
         self.position = max(self.position, self._number * PER_FILE)
         return self._number >= number

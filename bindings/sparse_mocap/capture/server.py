@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The capture process' other side: one thread that answers clients and knows when to end.
+"""The server in the capture process: answers clients and ends the process when it is not needed.
 
-Samples do not go through here: clients follow the sample log, so that none can be too slow.
+Samples do not pass through here: clients read the sample log, so a slow client loses nothing.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class _Client:
 
 
 class Server:
-    """Serves a recorder's clients until the capture is to end."""
+    """Serves a recorder's clients until the capture ends."""
 
     def __init__(self, recorder: Recorder) -> None:
         self._recorder = recorder
@@ -46,7 +46,7 @@ class Server:
         self.must_end = False
 
     def session(self) -> Session:
-        """What the session file is to say."""
+        """The content of the session file."""
         config = self._recorder.config
         return Session(
             os.getpid(),
@@ -58,7 +58,7 @@ class Server:
         )
 
     def run(self) -> None:
-        """Serves until a client says stop, or nobody is attached and nothing is recorded."""
+        """Serves until a client requests the end, or without clients and recordings."""
         path: Path = write_session(self.session())
         next_tick = last_needed = time.monotonic()
         try:
@@ -108,7 +108,7 @@ class Server:
         if len(self._clients) >= _MOST_CLIENTS:
             accepted.close()
             return
-        accepted.settimeout(1.0)  # answers are short; who does not read them is let go
+        accepted.settimeout(1.0)  # answers are short; a client that does not read them is dropped
         client = _Client(accepted)
         self._clients.add(client)
         self._selector.register(accepted, selectors.EVENT_READ, client)
@@ -146,7 +146,7 @@ class Server:
         if what == "stop":
             self.must_end = True
             return {}
-        return {"error": f"{what!r} is no request"}
+        return {"error": f"unknown request {what!r}"}
 
     def _left(self, client: _Client, *, is_kept: bool) -> dict[str, Any]:
         client.is_known = False

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Session files: how a capture that goes on is found by whoever wants to attach.
+"""Session files: how clients find a running capture.
 
-A capture listens on a port of the local machine and says which in ``capture-<pid>.json`` in a
-folder that only the user may read, with a token that a client must show. A file whose capture is
-gone is recognised by the port: nobody answers there, or somebody who does not know the token.
+A capture listens on a local TCP port. The port is in ``capture-<pid>.json``, in a folder that only
+the user can read, with a token that a client must send. A file left by a capture that has ended is
+recognised because nothing answers on its port, or something that does not know the token.
 """
 
 from __future__ import annotations
@@ -34,17 +34,17 @@ class Session:
     tcp_port: int
     token: str
     folder: str
-    """Of its logs."""
+    """The folder of its logs."""
     unix_s: float
     """When it started."""
     ports: tuple[str, ...] = ()
 
 
 class Connection:
-    """A request and an answer at a time, each one line of JSON. Raises OSError when it breaks."""
+    """A connection for requests and answers, each one line of JSON. Raises OSError."""
 
     def __init__(self, session: Session, greeting: str = "attach") -> None:
-        """Attaches, or only asks who is there ("peek")."""
+        """Attaches, or only checks that the capture is alive ("peek")."""
         self._socket = socket.create_connection(("127.0.0.1", session.tcp_port), ANSWER_TIMEOUT_S)
         self._file = self._socket.makefile("rb")
         try:
@@ -59,7 +59,7 @@ class Connection:
         self._socket.sendall(json.dumps({"do": request, **arguments}).encode() + b"\n")
         line = self._file.readline(_LONGEST_LINE)
         if not line.endswith(b"\n"):
-            raise ConnectionResetError("the capture hung up")
+            raise ConnectionResetError("the capture closed the connection")
         answer = json.loads(line)
         return answer if isinstance(answer, dict) else {}
 
@@ -71,7 +71,7 @@ class Connection:
 
 
 def runtime_folder() -> Path:
-    """The user's folder of session files, made when it is not there."""
+    """The user's folder of session files, created if needed."""
     named = os.environ.get(FOLDER_VARIABLE)
     if named:
         folder = Path(named)
@@ -87,12 +87,12 @@ def runtime_folder() -> Path:
 
 
 def session_path(pid: int) -> Path:
-    """Where the capture of that process says how to attach."""
+    """The session file of the capture with that process id."""
     return runtime_folder() / f"capture-{pid}.json"
 
 
 def write_session(session: Session) -> Path:
-    """Writes a session file that only the user may read."""
+    """Writes a session file that only the user can read."""
     path = session_path(session.pid)
     path.touch(mode=0o600)
     write_text(path, json.dumps(asdict(session)))
@@ -100,7 +100,7 @@ def write_session(session: Session) -> Path:
 
 
 def read_session(path: Path) -> Session | None:
-    """Returns what a session file says, None when it is not (yet) whole."""
+    """Reads a session file; None when it is not complete (yet)."""
     try:
         value = json.loads(path.read_text(encoding="utf-8"))
         return Session(**{**value, "ports": tuple(value["ports"])})
@@ -109,7 +109,7 @@ def read_session(path: Path) -> Session | None:
 
 
 def sessions() -> list[Session]:
-    """The captures that go on, oldest first; the files of those that are gone are removed."""
+    """The running captures, oldest first; removes the files of those that have ended."""
     found = []
     for path in sorted(runtime_folder().glob("capture-*.json")):
         session = read_session(path)
@@ -125,7 +125,7 @@ def sessions() -> list[Session]:
 def _is_alive(session: Session) -> bool:
     try:
         Connection(session, "peek").close()
-    except TimeoutError:  # it listens but is busy, or held
+    except TimeoutError:  # it listens but is busy or suspended
         return True
     except (OSError, ValueError):
         return False

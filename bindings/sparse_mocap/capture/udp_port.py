@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A UDP socket in the clothes of a serial port, for sensors that send datagrams over Wi-Fi."""
+"""A UDP socket with the interface of a serial port, for sensors that send over Wi-Fi."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ class UdpPort:
     in_waiting = 0
 
     def __init__(self, url: str, timeout_s: float) -> None:
-        place = urlsplit(url)
-        if not place.hostname or not place.port:
+        address = urlsplit(url)
+        if not address.hostname or not address.port:
             raise ValueError("is not udp://HOST:PORT, such as udp://0.0.0.0:6969")
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             self._socket.settimeout(timeout_s)
-            self._socket.bind((place.hostname, place.port))
+            self._socket.bind((address.hostname, address.port))
         except BaseException:
             self._socket.close()
             raise
         self._senders: dict[str, tuple[str, int]] = {}
         self.sender = ""
-        """Of the datagram that was just read; empty when none came."""
+        """Sender of the datagram that was just read; empty without one."""
 
     def read(self, size: int) -> bytes:
-        """Returns a whole datagram, or nothing when none comes in time."""
+        """Returns a whole datagram, or nothing after the timeout."""
         try:
             data, address = self._socket.recvfrom(_LONGEST_DATAGRAM)
         except TimeoutError:
@@ -44,13 +44,13 @@ class UdpPort:
         return data
 
     def write(self, data: bytes) -> int:
-        """Sends a datagram to everybody who ever sent one."""
+        """Sends a datagram to every sender so far."""
         for sender in tuple(self._senders):
             self.send_to(sender, data)
         return len(data)
 
     def send_to(self, receiver: str, data: bytes) -> None:
-        """Sends a datagram to one who sent one."""
+        """Sends a datagram to one of the senders."""
         if receiver in self._senders:
             self._socket.sendto(data, self._senders[receiver])
 

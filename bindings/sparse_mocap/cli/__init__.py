@@ -10,7 +10,7 @@ _EXTRA = ("click", "rich")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs the command and returns its exit code: 0, 1 (the input is at fault) or 2 (usage)."""
+    """Runs the command and returns its exit code: 0, 1 (wrong input) or 2 (wrong usage)."""
     try:
         from .app import run
     except ModuleNotFoundError as error:

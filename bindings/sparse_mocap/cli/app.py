@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tree of commands."""
+"""The list of commands."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ _COMMANDS = {
     "simulate": ".simulate:simulate",
     "train": ".train:train",
 }
-"""A command's name, and the module that has it (loaded only when it is called)."""
+"""Each command's name and module, which is imported only when the command is used."""
 
 
 class _Commands(click.Group):
-    """Loads commands when they are asked for and turns what they raise into exit codes."""
+    """Imports commands when they are used and turns their exceptions into exit codes."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return sorted(_COMMANDS)
@@ -66,9 +66,9 @@ def _print_version(ctx: click.Context, _: click.Parameter, is_wanted: bool) -> N
     help="Show the version and exit.",
 )  # fmt: skip
 def app() -> None:
-    """Full-body motion from a few inertial sensors and a database of motion capture.
+    """Full-body motion from a few motion sensors and a database of motion capture.
 
-    Exit code 0 is success, 1 says that the input is at fault, 2 that the command is.
+    Exit codes: 0 success, 1 wrong input, 2 wrong usage.
     """
 
 
@@ -83,6 +83,6 @@ def run(arguments: Sequence[str] | None = None) -> int:
         Fault("cancelled").show()
         return 130
     except BrokenPipeError:
-        sys.stderr.close()  # nobody reads any more: say nothing on the way out
+        sys.stderr.close()  # the reader is gone: suppress messages at exit
         return 1
     return result if isinstance(result, int) else 0

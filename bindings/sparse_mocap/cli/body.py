@@ -9,7 +9,6 @@ import click
 
 from .. import body_of_height
 from ..body_file import body_of_motion, write_body
-from .console import warn
 from .options import FilePath, check_ending
 
 
@@ -29,9 +28,8 @@ def body(clip: Path | None, height_m: float | None, output: Path) -> None:
     if (clip is None) == (height_m is None):
         raise click.UsageError("Give either a motion file of the performer or their --height.")
     if clip is not None:
-        found, warnings = body_of_motion(clip)
+        found = body_of_motion(clip)
         write_body(output, found, clip.name)
-        warn(warnings)
     else:
         assert height_m is not None
         found = body_of_height(height_m)

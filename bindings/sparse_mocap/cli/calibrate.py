@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap calibrate``: a take of guided movements into a calibration."""
+"""``sparse-mocap calibrate``: makes a calibration from a take of guided movements."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .options import FilePath, Sites, Span, check_ending, position_along_bone_op
 
 
 class Movement(click.ParamType):  # type: ignore[type-arg]
-    """A guided movement and when it was made."""
+    """A guided movement and its time span."""
 
     name = "NAME=FROM:TO"
 
@@ -31,12 +31,12 @@ class Movement(click.ParamType):  # type: ignore[type-arg]
         name, _, span = str(value).partition("=")
         if name not in guided_movements():
             known = ", ".join(guided_movements())
-            self.fail(f"{name!r} is no guided movement; known are {known}", param, ctx)
+            self.fail(f"unknown guided movement {name!r}; choose from {known}", param, ctx)
         return name, Span().convert(span, param, ctx)
 
 
 class Shake(click.ParamType):  # type: ignore[type-arg]
-    """A site and when the sensor worn there was shaken."""
+    """A sensor location and when the sensor there was shaken."""
 
     name = "SITE=FROM:TO"
 
@@ -53,26 +53,30 @@ class Shake(click.ParamType):  # type: ignore[type-arg]
 
 @click.command()
 @click.argument("take", metavar="TAKE.csv", type=FilePath)
-@click.option("-o", "--output", type=FilePath, required=True, help="The calibration (.json).")
-@click.option("--stand", type=Span(), required=True, help="When the wearer stood still (s).")
+@click.option(
+    "-o", "--output", type=FilePath, required=True, help="The calibration file to write (.json)."
+)
+@click.option("--stand", type=Span(), required=True, help="When the performer stood still, in s.")
 @click.option(
     "--pose", type=click.Choice(standing_pose_names()), default="arms_down", show_default=True,
-    help="How: arms hanging with palms at the thighs, or a T-pose with palms down.",
+    help="How: arms hanging with palms at the thighs, or T-pose with palms down.",
 )  # fmt: skip
-@click.option("--arms", type=Span(), help="When both elbows were bent (as --move bend_elbows=...).")
-@click.option("--legs", type=Span(), help="When the wearer squatted (as --move squat=...).")
+@click.option(
+    "--arms", type=Span(), help="When both elbows were bent (same as --move bend_elbows=...)."
+)
+@click.option("--legs", type=Span(), help="When the performer squatted (same as --move squat=...).")
 @click.option(
     "--move", "moves", type=Movement(), multiple=True,
-    help=f"When a guided movement was made: {', '.join(guided_movements())}. May be repeated.",
+    help=f"When a guided movement was made: {', '.join(guided_movements())}. Can be repeated.",
 )  # fmt: skip
-@click.option("--sites", type=Sites(), help="Where the take's sensors are worn, in its order.")
+@click.option("--sites", type=Sites(), help="Sensor locations, in the take's order.")
 @click.option(
     "--shake", "shakes", type=Shake(), multiple=True,
-    help="When only the sensor worn at a site was shaken: says which of the take's it is.",
+    help="When only the sensor at this location was shaken, to identify it. Can be repeated.",
 )  # fmt: skip
 @click.option(
     "--height", type=click.FloatRange(0.5, 2.5), default=1.75, show_default=True,
-    help="The wearer's, in metres.",
+    help="Body height of the performer, in metres.",
 )  # fmt: skip
 @position_along_bone_option
 def calibrate_command(
@@ -88,11 +92,11 @@ def calibrate_command(
     height: float,
     positions_along_bone: tuple[tuple[str, float], ...],
 ) -> None:
-    """Finds how sensors are scaled, turned and where along their bones they sit.
+    """Finds the scale, orientation and position of the sensors on the body.
 
-    The wearer stands still, bends both elbows about five times with the upper arms at the sides and
-    the thumbs forward, and squats about five times; or makes other guided movements (--move).
-    What these do not determine is said and left as the site says.
+    The performer stands still, bends both elbows about five times with the upper arms at the sides
+    and the thumbs forward, and squats about five times; or makes other guided movements (--move).
+    Values that these do not determine are reported and left at the location's defaults.
     """
     check_ending(output, ".json")
     recorded = read_take(take)
@@ -101,31 +105,31 @@ def calibrate_command(
     found = calibrate(
         recorded,
         steps,
-        sites=_worn(recorded, sites, shakes),
+        sites=_located(recorded, sites, shakes),
         height_m=height,
         positions=dict(positions_along_bone),
     )
     write_calibration(output, found)
     warn(found.notes)
-    _tell(output, found)
+    _print(output, found)
 
 
-def _worn(
+def _located(
     take: Take,
     sites: tuple[str, ...] | None,
     shakes: tuple[tuple[str, tuple[float, float]], ...],
 ) -> dict[str, str]:
     if sites is not None and len(sites) != len(take.sensors):
         raise click.BadParameter(
-            f"the take has {len(take.sensors)} sensors: {', '.join(take.sensors)}",
+            f"give one location for each sensor of the take: {', '.join(take.sensors)}",
             param_hint="'--sites'",
         )
-    worn = dict(zip(take.sensors, sites, strict=True)) if sites else {}
-    return worn | {assign_by_shaking(take, span): site for site, span in shakes}
+    located = dict(zip(take.sensors, sites, strict=True)) if sites else {}
+    return located | {assign_by_shaking(take, span): site for site, span in shakes}
 
 
-def _tell(output: Path, found: Calibration) -> None:
-    table = Table("sensor", "site", "at rest", "scale", "mounting", "along the bone", "quality")
+def _print(output: Path, found: Calibration) -> None:
+    table = Table("sensor", "location", "at rest", "scale", "mounting", "along bone", "quality")
     for name, sensor in found.sensors.items():
         table.add_row(
             name,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the commands about sensors share."""
+"""Shared by the commands for sensors."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from .options import Decorator, Sites
 
 
 class Span(click.ParamType):  # type: ignore[type-arg]
-    """A stretch of time."""
+    """A time span, as duration and begin."""
 
     name = "S@T"
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[float, float]:
-        """Returns begin and length in s."""
+        """Returns begin and duration in s."""
         if isinstance(value, tuple):
             return value
         length, _, begin = str(value).partition("@")
         try:
             span = float(begin), float(length)
         except ValueError:
-            self.fail(f"{value!r} is not S@T, such as 5@12.5: for 5 s from 12.5 s on", param, ctx)
+            self.fail(f"{value!r} is not S@T, such as 5@12.5 (5 s, starting at 12.5 s)", param, ctx)
         if not (span[0] >= 0 and span[1] >= 0):
-            self.fail(f"{value!r} has a time below 0", param, ctx)
+            self.fail(f"{value!r} has a negative time", param, ctx)
         return span
 
 
 class _Setting(click.ParamType):  # type: ignore[type-arg]
-    """A setting of a driver."""
+    """An option of a driver."""
 
     name = "NAME=VALUE"
 
@@ -51,7 +51,7 @@ class _Setting(click.ParamType):  # type: ignore[type-arg]
         return name.strip(), text.strip()
 
 
-_DRIVER_HELP = "Whose protocol is spoken there."
+_DRIVER_HELP = "The sensor protocol."
 
 driver_option: Decorator = click.option(
     "--driver", type=click.Choice(driver_names()), required=True, help=_DRIVER_HELP
@@ -66,25 +66,26 @@ def _as_dictionary(
 
 driver_options_option: Decorator = click.option(
     "--option", "options", type=_Setting(), multiple=True, callback=_as_dictionary,
-    help="A setting of the driver. May be repeated.",
+    help="An option of the driver. Can be repeated.",
 )  # fmt: skip
 
 
 def capture_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Adds the options that say what to capture."""
+    """Adds the options of a capture."""
     for option in (
         click.option(
             "--sites", type=Sites(), default=None,
-            help="Where the sensors are worn, in their order.",
+            help="Sensor locations, in the order of the sensors.",
         ),
         driver_options_option,
         click.option(
-            "--baud", type=click.IntRange(50, 4_000_000), default=DEFAULT_BAUD, show_default=True
+            "--baud", type=click.IntRange(50, 4_000_000), default=DEFAULT_BAUD, show_default=True,
+            help="Speed of the serial port, in bits per second.",
         ),
         click.option("--driver", type=click.Choice(driver_names()), help=_DRIVER_HELP),
         click.option(
             "--port", "ports", metavar="PORT_OR_URL", multiple=True,
-            help="A serial port or pyserial URL; repeated where each sensor has its own.",
+            help="A serial port, pyserial URL or udp://HOST:PORT. Can be repeated.",
         ),
     ):  # fmt: skip
         function = option(function)
@@ -98,7 +99,7 @@ def config_of(
     options: dict[str, str],
     sites: tuple[str, ...] | None,
 ) -> CaptureConfig:
-    """Returns what is to be captured. Raises UsageError when it is not said."""
+    """Returns the capture's configuration. Raises UsageError when an option is missing."""
     if not ports:
         raise click.UsageError("Missing option '--port'.")
     if driver is None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What commands show: results on standard output, progress and warnings on standard error."""
+"""Output of commands: results on standard output, progress and warnings on standard error."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _MOST_WARNINGS = 10
 
 @contextmanager
 def progress_bar(label: str) -> Iterator[ProgressCallback]:
-    """Gives a callback that moves a bar, on a terminal, and returns False after Ctrl-C."""
+    """Yields a callback that updates a bar, on a terminal, and returns False after Ctrl-C."""
     console = Console(stderr=True)
     bar = Progress(
         TextColumn("{task.description}"),
@@ -61,7 +61,7 @@ def progress_bar(label: str) -> Iterator[ProgressCallback]:
 def import_bar(label: str) -> Iterator[tuple[ProgressCallback, DetailsCallback]]:
     """As progress_bar, for imports: shows files, frames, MB/s and the time left.
 
-    Gives the callbacks ``progress`` and ``details``.
+    Yields the callbacks ``progress`` and ``details``.
     """
     console = Console(stderr=True)
     bar = Progress(
@@ -91,14 +91,14 @@ def import_bar(label: str) -> Iterator[tuple[ProgressCallback, DetailsCallback]]
 
 
 def figures_of(report: ProgressReport, elapsed_s: float) -> str:
-    """Returns what an import's bar shows beside it: files, frames, MB/s."""
+    """Returns the text beside an import's bar: files, frames, MB/s."""
     speed = report.bytes / 1e6 / elapsed_s if elapsed_s > 0 else 0.0
     return f"{report.files}/{report.num_files} files, {report.frames} frames, {speed:.1f} MB/s"
 
 
 @contextmanager
 def interrupted() -> Iterator[threading.Event]:
-    """Gives an event that Ctrl-C sets; a second Ctrl-C interrupts as ever."""
+    """Yields an event that Ctrl-C sets; a second Ctrl-C interrupts as usual."""
     event = threading.Event()
     if threading.current_thread() is not threading.main_thread():
         yield event
@@ -118,7 +118,7 @@ def interrupted() -> Iterator[threading.Event]:
 
 @contextmanager
 def status_line() -> Iterator[Callable[[str], None]]:
-    """Gives a function that shows a line in place of the last one, on a terminal."""
+    """Yields a function that replaces the status line, on a terminal."""
     console = Console(stderr=True, highlight=False)
     if not console.is_terminal:
         yield lambda text: None
@@ -128,7 +128,7 @@ def status_line() -> Iterator[Callable[[str], None]]:
 
 
 def warn(lines: Sequence[str]) -> None:
-    """Prints warnings, and only the number of those beyond the first few."""
+    """Prints the first warnings, and the number of the others."""
     for line in lines[:_MOST_WARNINGS]:
         click.echo(f"warning: {' '.join(line.split())}", err=True)
     if len(lines) > _MOST_WARNINGS:
@@ -136,7 +136,7 @@ def warn(lines: Sequence[str]) -> None:
 
 
 def print_table(table: Table) -> None:
-    """Prints a table as wide as its content, however narrow the terminal is."""
+    """Prints a table in full width, even on a narrow terminal."""
     console = Console(highlight=False)
     width = Measurement.get(console, console.options.update(max_width=1000), table).maximum
     Console(highlight=False, width=width).print(table)

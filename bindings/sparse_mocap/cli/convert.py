@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap convert``: motion files into others."""
+"""``sparse-mocap convert``: converts motion files."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ from .options import FilePath, check_ending, frame_option
 @click.argument("clip", metavar="CLIP", type=FilePath)
 @click.option(
     "-o", "--output", type=FilePath, required=True,
-    help="OUT.bvh; OUT.amc, with its skeleton OUT.asf beside it; or OUT.csv for a table of the"
-    " standard joints' positions.",
+    help="OUT.bvh; OUT.amc, which also writes its skeleton OUT.asf; or OUT.csv for a table of joint"
+    " positions on the standard skeleton.",
 )  # fmt: skip
 @click.option(
     "--skeleton", metavar="own|DB.smdb", default="own", show_default=True,
-    help="The file's own skeleton (for .csv: the standard one with the file's proportions), or a"
-    " database's.",
+    help="The file's own skeleton (for .csv: the standard skeleton with the file's proportions), or"
+    " that of a database.",
 )  # fmt: skip
 @frame_option
-@click.option("--fps", type=float, help="Resamples to so many frames a second.")
+@click.option("--fps", type=float, help="Resample to this many frames per second.")
 def convert(clip: Path, output: Path, skeleton: str, frame: str, fps: float | None) -> None:
     """Converts a motion file, .bvh or .amc."""
     ending = check_ending(output, ".bvh", ".amc", ".csv")

@@ -27,25 +27,25 @@ from .options import FilePath
 _IMPORT_OPTIONS = (
     click.option(
         "--exclude", metavar="GLOB", multiple=True,
-        help="Leaves out files with such a name. May be repeated.",
+        help="Exclude files with a matching name. Can be repeated.",
     ),
-    click.option("--strict", is_flag=True, help="Stops at the first file that cannot be used."),
+    click.option("--strict", is_flag=True, help="Stop at the first file that cannot be used."),
     click.option(
         "--keep-duplicates", is_flag=True,
-        help="Also takes files whose motion is there already, as from another format.",
+        help="Keep files whose motion is already in the database, for example from another format.",
     ),
     click.option(
         "--metadata", type=FilePath,
-        help="A table file,actor,class,source,license that says what file names do not; by default"
-        " metadata.csv in the source folder.",
+        help="A table with the columns file,actor,class,source,license; by default metadata.csv in"
+        " the source folder.",
     ),
     click.option(
         "--mapping", "mapping_path", metavar="MAP.json", type=FilePath,
-        help="Takes these joints for the body's in skeletons that have them (see inspect).",
+        help="Skeleton mapping to use for skeletons that have its joints (see inspect).",
     ),
     click.option(
         "--threads", "num_threads", type=click.IntRange(0, 1024), default=0,
-        help="How many; 0, the default, is one a processor. The database is the same.",
+        help="Number of threads; 0, the default, uses all processors. Does not affect the result.",
     ),
 )  # fmt: skip
 
@@ -62,26 +62,28 @@ def _import_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 _output_option = click.option(
-    "-o", "--output", type=FilePath, help="Where to write it; by default in the old one's place."
+    "-o", "--output", type=FilePath, help="The file to write; by default replaces the database."
 )
 
 
 @click.group()
 def database() -> None:
-    """Builds motion databases, changes them, and shows what they hold."""
+    """Builds, changes and shows motion databases."""
 
 
 @database.command()
 @click.argument("sources", metavar="SOURCE...", type=FilePath, nargs=-1, required=True)
-@click.option("-o", "--output", type=FilePath, required=True, help="The database file (.smdb).")
 @click.option(
-    "--fps", type=float, default=25.0, show_default=True, help="Frames a second of the database."
+    "-o", "--output", type=FilePath, required=True, help="The database file to write (.smdb)."
 )
-@click.option("--mirror", is_flag=True, help="Adds every clip with left and right exchanged.")
-@click.option("--reverse", is_flag=True, help="Adds every clip played backwards.")
+@click.option(
+    "--fps", type=float, default=25.0, show_default=True, help="Frames per second of the database."
+)
+@click.option("--mirror", is_flag=True, help="Also add a mirrored copy of every clip.")
+@click.option("--reverse", is_flag=True, help="Also add a reversed copy of every clip.")
 @click.option(
     "--no-tempo-copies", is_flag=True,
-    help="Leaves out the copies at 0.8 and 1.25 times the tempo, which help small databases.",
+    help="Do not add copies at 0.8 and 1.25 times the tempo, which improve small databases.",
 )  # fmt: skip
 @_import_options
 def build(
@@ -96,7 +98,7 @@ def build(
     """Builds a database from motion capture.
 
     SOURCE is a .bvh or .amc file, or a folder, which is searched recursively. An .amc needs its
-    .asf beside it.
+    .asf in the same folder.
     """
     with import_bar("Building") as (progress, details):
         report = build_database(
@@ -110,7 +112,7 @@ def build(
             **options,
             **({"tempo_copies": ()} if no_tempo_copies else {}),
         )
-    _tell(output, report, fps)
+    _print(output, report, fps)
 
 
 @database.command()
@@ -121,54 +123,56 @@ def build(
 def add(path: Path, sources: tuple[Path, ...], output: Path | None, **options: Any) -> None:
     """Adds motion capture to a database.
 
-    On the database's own skeleton, at its rate and with its kinds of copies. Files that are in
-    already are not read again; one that changed since takes the place of its old clips.
+    The new clips get the database's skeleton, frame rate and kinds of copies. Files already in the
+    database are not read again; clips of files that have changed are replaced.
     """
     target = output or path
     with import_bar("Adding") as (progress, details):
         report = add_to_database(
             path, list(sources), target, progress=progress, details=details, **options
         )
-    _tell(target, report, MotionDatabase(target).rate_hz)
+    _print(target, report, MotionDatabase(target).rate_hz)
 
 
 @database.command()
 @click.argument("path", metavar="DB.smdb", type=FilePath)
 @click.option(
     "--clips", metavar="GLOB", multiple=True, required=True,
-    help="Drops clips with such a name or source file, and their copies. May be repeated.",
+    help="Remove clips with a matching name or source file, and their copies. Can be repeated.",
 )  # fmt: skip
 @_output_option
 def drop(path: Path, clips: tuple[str, ...], output: Path | None) -> None:
-    """Drops clips from a database."""
+    """Removes clips from a database."""
     target = output or path
     dropped = drop_from_database(path, list(clips), target)
     left = MotionDatabase(target)
     click.echo(
-        f"{target}: {dropped} clips dropped, {len(left.clips)} clips, {left.num_frames} frames left"
+        f"{target}: {dropped} clips removed, {len(left.clips)} clips, {left.num_frames} frames left"
     )
 
 
-@database.command()
+@database.command("info")
 @click.argument("path", metavar="DB.smdb", type=FilePath)
-@click.option("--json", "as_json", is_flag=True, help="Prints everything, each clip too, as JSON.")
-def info(path: Path, as_json: bool) -> None:
-    """Shows what a database holds."""
-    told = described(MotionDatabase(path))
+@click.option(
+    "--json", "as_json", is_flag=True, help="Print everything, including every clip, as JSON."
+)
+def info_command(path: Path, as_json: bool) -> None:
+    """Shows the content of a database."""
+    info = described(MotionDatabase(path))
     if as_json:
-        click.echo(json.dumps(told, indent=2, ensure_ascii=False))
+        click.echo(json.dumps(info, indent=2, ensure_ascii=False))
     else:
-        show(told)
+        show(info)
 
 
-def _tell(output: Path, report: BuildReport, rate_hz: float) -> None:
-    warn([f"left out: {reason}" for _, reason in report.skipped])
-    warn([f"left out: {reason}" for _, reason in report.duplicates])
+def _print(output: Path, report: BuildReport, rate_hz: float) -> None:
+    warn([f"skipped: {reason}" for _, reason in report.skipped])
+    warn([f"skipped: {reason}" for _, reason in report.duplicates])
     warn(report.warnings)
     counts = {
-        "left out": len(report.skipped),
+        "skipped": len(report.skipped),
         "duplicates": len(report.duplicates),
-        "in already": report.num_known,
+        "unchanged": report.num_known,
         "replaced": report.num_replaced,
     }
     more = "".join(f", {count} {what}" for what, count in counts.items() if count)

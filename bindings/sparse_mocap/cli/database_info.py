@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What ``sparse-mocap database info`` tells of a database."""
+"""The output of ``sparse-mocap database info``."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _MOST_NAMES, _MOST_FILES, _LONGEST_TEXT = 40, 10, 60
 
 
 def described(opened: MotionDatabase) -> dict[str, Any]:
-    """Returns everything that a database says of itself, ready for JSON."""
+    """Returns everything about a database, ready for JSON."""
     clips = opened.clips
     originals = [clip for clip in clips if not is_copy(clip)]
     return {
@@ -124,7 +124,7 @@ def _skeletons(opened: MotionDatabase, originals: Sequence[Clip]) -> list[dict[s
 
 
 def _warnings(originals: Sequence[Clip]) -> list[dict[str, Any]]:
-    """The kinds, the most frequent first."""
+    """The kinds of warnings, most frequent first."""
     counts: Counter[str] = Counter()
     files: Counter[str] = Counter()
     for clip in originals:
@@ -136,33 +136,33 @@ def _warnings(originals: Sequence[Clip]) -> list[dict[str, Any]]:
     ]
 
 
-def show(told: Mapping[str, Any]) -> None:
-    """Prints what described() returned for people."""
-    sizes = (f"{name} {size / 1e6:.1f} MB" for name, size in told["array_bytes"].items())
+def show(info: Mapping[str, Any]) -> None:
+    """Prints the result of described() as text."""
+    sizes = (f"{name} {size / 1e6:.1f} MB" for name, size in info["array_bytes"].items())
     rows = {
-        "file": f"{told['path']}, {told['bytes'] / 1e6:.1f} MB",
+        "file": f"{info['path']}, {info['bytes'] / 1e6:.1f} MB",
         "arrays": ", ".join(sizes),
-        "frames": f"{told['frames']} at {told['rate_hz']:g} Hz, {told['duration_s'] / 60:.1f} min",
-        "clips": f"{told['num_clips']}, of which {told['num_mirrored']} mirrored"
-        f" and {told['num_reversed']} reversed, {told['num_tempo_copies']} at another tempo",
-        "sources": f"{told['num_sources']} files, {told['source_frames']} frames,"
-        f" {told['source_hours']:.2f} h",
-        "actors": _counted(told["actors"]),
-        "classes": _counted(told["motion_classes"]),
-        "hours": _hours(told["source_hours_by_actor"]),
-        "by class": _hours(told["source_hours_by_class"]),
-        "origins": _counted(told["origins"]),
-        "licences": _counted(told["licenses"]),
-        "sites": ", ".join(told["sites"]),
-        "joints": " ".join(told["joints"]),
-        "build": ", ".join(f"{key} {value}" for key, value in told["build"].items()),
+        "frames": f"{info['frames']} at {info['rate_hz']:g} Hz, {info['duration_s'] / 60:.1f} min",
+        "clips": f"{info['num_clips']}, of which {info['num_mirrored']} mirrored"
+        f" and {info['num_reversed']} reversed, {info['num_tempo_copies']} at another tempo",
+        "sources": f"{info['num_sources']} files, {info['source_frames']} frames,"
+        f" {info['source_hours']:.2f} h",
+        "actors": _counted(info["actors"]),
+        "classes": _counted(info["motion_classes"]),
+        "hours": _hours(info["source_hours_by_actor"]),
+        "by class": _hours(info["source_hours_by_class"]),
+        "origins": _counted(info["origins"]),
+        "licences": _counted(info["licenses"]),
+        "sensors": ", ".join(info["sites"]),
+        "joints": " ".join(info["joints"]),
+        "build": ", ".join(f"{key} {value}" for key, value in info["build"].items()),
     }
     for name, text in rows.items():
         if text:
             click.echo(f"{name:<8} {text}")
-    for skeleton in told["skeletons"]:
+    for skeleton in info["skeletons"]:
         click.echo(f"skeleton {_skeleton_line(skeleton)}")
-    for warning in told["warnings"]:
+    for warning in info["warnings"]:
         click.echo(
             f"warning  {warning['kind']}: {warning['count']} times in {warning['num_files']} files"
         )
@@ -171,11 +171,11 @@ def show(told: Mapping[str, Any]) -> None:
     if told["other_arrays"]:
         click.echo(f"further  {_listed(list(map(_tensor_text, told['other_arrays'])))}")
     for kind in ("skipped", "duplicates"):
-        files = told[kind]
+        files = info[kind]
         for file in files[:_MOST_FILES]:
-            click.echo(f"left out {file['reason']}")
+            click.echo(f"skipped  {file['reason']}")
         if len(files) > _MOST_FILES:
-            click.echo(f"left out and {len(files) - _MOST_FILES} more, see --json")
+            click.echo(f"skipped  and {len(files) - _MOST_FILES} more, see --json")
 
 
 def _skeleton_line(skeleton: Mapping[str, Any]) -> str:

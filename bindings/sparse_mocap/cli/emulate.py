@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap emulate``: a take, spoken by a device that is not there."""
+"""``sparse-mocap emulate``: plays a take as a device would send it."""
 
 from __future__ import annotations
 
@@ -20,26 +20,42 @@ from .options import FilePath, noise_option
 @driver_options_option
 @click.option(
     "--speed", type=click.FloatRange(0.01, 1000), default=1.0, show_default=True,
-    help="How much faster than performed; a protocol without the device's time needs 1.",
+    help="Playback speed; protocols without device time need 1.",
 )  # fmt: skip
-@click.option("--link", type=FilePath, help="Keeps a symbolic link at the pseudo-terminal.")
-@click.option("--loop", is_flag=True, help="Plays the take again and again.")
+@click.option("--link", type=FilePath, help="Create a symbolic link to the pseudo-terminal.")
+@click.option("--loop", is_flag=True, help="Repeat the take until Ctrl-C.")
 @noise_option
-@click.option("--loss", type=click.FloatRange(0, 1), default=0.0, help="Part of packets left out.")
+@click.option("--loss", type=click.FloatRange(0, 1), default=0.0, help="Fraction of packets lost.")
 @click.option(
-    "--corrupt", type=click.FloatRange(0, 1), default=0.0, help="Part of bytes that are changed."
+    "--corrupt", type=click.FloatRange(0, 1), default=0.0, help="Fraction of bytes changed."
 )
-@click.option("--cut-after", type=click.FloatRange(0), help="Unplugs the device, in s.")
+@click.option(
+    "--cut-after", type=click.FloatRange(0), help="Unplug the device after this time, in s."
+)
 @click.option(
     "--replug-after", type=click.FloatRange(0),
-    help="Plugs it in again so much later, in s, as another pseudo-terminal.",
+    help="Plug it in again this much later, in s, as another pseudo-terminal.",
 )  # fmt: skip
-@click.option("--stall", "stalls", type=Span(), multiple=True, help="Silent for S s from T on.")
-@click.option("--reset-at", "resets", type=click.FloatRange(0), multiple=True, help="Starts anew.")
-@click.option("--garbage", type=Span(), multiple=True, help="Random bytes for S s from T on.")
-@click.option("--duplicate-id", is_flag=True, help="The second sensor has the first one's id.")
 @click.option(
-    "--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of chance."
+    "--stall", "stalls", type=Span(), multiple=True, help="Send nothing for S s from time T on."
+)
+@click.option(
+    "--reset-at",
+    "resets",
+    type=click.FloatRange(0),
+    multiple=True,
+    help="Restart the device at this time, in s.",
+)
+@click.option(
+    "--garbage", type=Span(), multiple=True, help="Send random bytes for S s from time T on."
+)
+@click.option("--duplicate-id", is_flag=True, help="Give the second sensor the first one's id.")
+@click.option(
+    "--seed",
+    type=click.IntRange(0),
+    default=0,
+    show_default=True,
+    help="Seed of the random numbers.",
 )
 def emulate(
     take_path: Path,
@@ -59,10 +75,10 @@ def emulate(
     duplicate_id: bool,
     seed: int,
 ) -> None:
-    """Speaks a device's protocol over a pseudo-terminal, from a take.
+    """Plays a take over a pseudo-terminal, in the protocol of a device.
 
-    Prints the pseudo-terminal's path on the first line (a line for each sensor, where a port
-    carries one only), plays the take from the moment a program opens it, and ends with it.
+    Prints the path of the pseudo-terminal on the first line (one line for each sensor, if a port
+    has only one), starts playing when a program opens it, and ends after the take.
     """
     take = noisy(read_take(take_path), noise_presets()[noise], seed)
     faults = Faults(
@@ -70,18 +86,18 @@ def emulate(
     )
     emulator = Emulator(take, driver, options, speed, faults, link)
     with interrupted() as stop:
-        _tell(emulator.plug_in())
+        _print(emulator.plug_in())
         try:
             while True:
-                emulator.run(stop.is_set, _tell)
+                emulator.run(stop.is_set, _print)
                 if not loop or stop.is_set():
                     break
         finally:
             emulator.close()
-    lost = f", {emulator.num_overrun} not fetched in time" if emulator.num_overrun else ""
+    lost = f", {emulator.num_overrun} not read in time" if emulator.num_overrun else ""
     click.echo(f"sent {emulator.num_sent} packets{lost}", err=True)
 
 
-def _tell(paths: list[str]) -> None:
+def _print(paths: list[str]) -> None:
     for path in paths:
         click.echo(path)

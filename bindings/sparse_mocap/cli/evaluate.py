@@ -58,7 +58,7 @@ from .options import PAPER_SITES, FilePath, Sites, noise_option, seed_option, se
 @click.option("--paper", is_flag=True, help="Runs every comparison of the methods' papers.")
 @click.option("--offline", is_flag=True, help="Runs best quality too, where methods have it.")
 @click.option("--gyroscopes", is_flag=True, help="Sensors have gyroscopes, which are used.")
-@click.option("--sites", type=Sites(), default=PAPER_SITES, help="Where sensors are worn.")
+@click.option("--sites", type=Sites(), default=PAPER_SITES, help="Sensor locations.")
 @noise_option
 @seed_option
 @click.option("--cache", type=FilePath, help="Keeps the database here for the next evaluation.")

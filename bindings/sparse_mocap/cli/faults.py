@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What ends a command: one line and an exit code."""
+"""Errors that end a command with one line and an exit code."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import click
 
 
 class Fault(click.ClickException):
-    """The input is at fault; shown as one line without a traceback."""
+    """Wrong input; shown as one line without a traceback."""
 
     exit_code = 1
 
@@ -21,14 +21,14 @@ class Fault(click.ClickException):
 
 
 class Stopped(Fault):
-    """The user asked to stop."""
+    """The user cancelled."""
 
     exit_code = 130
 
 
 @contextmanager
 def as_faults() -> Iterator[None]:
-    """Turns the errors that an input, a setting or the system causes into faults."""
+    """Turns errors caused by input, options or the system into faults."""
     try:
         yield
     except (click.ClickException, click.exceptions.Exit, click.Abort):
@@ -36,7 +36,7 @@ def as_faults() -> Iterator[None]:
     except OSError as error:
         if isinstance(error, BrokenPipeError):
             raise
-        raise Fault(_told(error)) from error
+        raise Fault(_os_message(error)) from error
     except ImportError as error:
         raise Fault(_missing(error)) from error
     except Exception as error:
@@ -58,7 +58,7 @@ def _is_cancelled(error: Exception) -> bool:
     return isinstance(error, Cancelled)
 
 
-def _told(error: OSError) -> str:
+def _os_message(error: OSError) -> str:
     if error.filename is None or error.strerror is None:
         return str(error)
     return f"{error.filename}: {error.strerror}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap import``: what other programs recorded, as takes."""
+"""``sparse-mocap import``: converts recordings of other programs to takes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .options import FilePath, Sites, check_ending
 
 
 class SensorSite(click.ParamType):  # type: ignore[type-arg]
-    """A recording's sensor and where it was worn."""
+    """A sensor of a recording and its location."""
 
     name = "NAME=SITE"
 
@@ -33,17 +33,17 @@ class SensorSite(click.ParamType):  # type: ignore[type-arg]
 
 
 @click.command(
-    name="import", help=f"Turns a recording into a take: {', '.join(recording_formats())}."
+    name="import", help=f"Converts a recording to a take: {', '.join(recording_formats())}."
 )
 @click.argument("recording", metavar="RECORDING", type=FilePath)
-@click.option("-o", "--output", type=FilePath, required=True, help="The take file (.csv).")
+@click.option("-o", "--output", type=FilePath, required=True, help="The take file to write (.csv).")
 @click.option(
     "--site", "sites", type=SensorSite(), multiple=True,
-    help="Where a sensor was worn, as in 'Right Foot=right_ankle'. May be repeated; the others"
-    " keep their names.",
+    help="Location of a sensor, as in 'Right Foot=right_ankle'. Can be repeated; other sensors keep"
+    " their names.",
 )  # fmt: skip
 def import_recording(recording: Path, output: Path, sites: tuple[tuple[str, str], ...]) -> None:
-    """Turns a recording into a take."""
+    """Converts a recording to a take."""
     check_ending(output, ".csv")
     take = read_recording(recording, dict(sites))
     write_take(output, take)
@@ -53,4 +53,4 @@ def import_recording(recording: Path, output: Path, sites: tuple[tuple[str, str]
         click.echo(f"{name}: {len(record.times_s)} samples, {record.times_s[-1]:.2f} s")
     unnamed = [name for name in take.sensors if name not in site_names()]
     if unnamed:
-        warn([f"no site is given for {', '.join(unnamed)}; add --site '{unnamed[0]}=SITE'"])
+        warn([f"no location given for {', '.join(unnamed)}; add --site '{unnamed[0]}=SITE'"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap inspect``: what motion files hold."""
+"""``sparse-mocap inspect``: shows the content of motion files."""
 
 from __future__ import annotations
 
@@ -25,18 +25,20 @@ from .options import FilePath
 @click.argument("sources", metavar="SOURCE...", type=FilePath, nargs=-1, required=True)
 @click.option(
     "--mapping", "mapping_path", metavar="MAP.json", type=FilePath,
-    help="Takes these joints for the body's instead of finding them.",
+    help="Skeleton mapping to use instead of detecting the joints.",
 )  # fmt: skip
 @click.option(
     "--save-mapping", metavar="MAP.json", type=FilePath,
-    help="Writes which joint was taken for which: to be edited, and given with --mapping.",
+    help="Write the detected skeleton mapping to a file, to edit and use with --mapping.",
 )  # fmt: skip
-@click.option("--remember", is_flag=True, help="Uses --mapping for all such skeletons from now on.")
-@click.option("--forget", is_flag=True, help="Forgets what is remembered for such skeletons.")
-@click.option("--json", "json_path", type=FilePath, help="Also writes everything as JSON.")
+@click.option(
+    "--remember", is_flag=True, help="Use --mapping for all files with this skeleton from now on."
+)
+@click.option("--forget", is_flag=True, help="Forget the mapping remembered for this skeleton.")
+@click.option("--json", "json_path", type=FilePath, help="Also write everything as JSON.")
 @click.option(
     "--plot", type=FilePath,
-    help="Also draws six frames of each file, its own skeleton beside the mapped one (.png).",
+    help="Also draw six frames of each file, its own skeleton next to the standard one (.png).",
 )  # fmt: skip
 def inspect(
     sources: tuple[Path, ...],
@@ -47,10 +49,10 @@ def inspect(
     json_path: Path | None,
     plot: Path | None,
 ) -> None:
-    """Shows what motion files hold and how their bodies are found.
+    """Shows the content of motion files and how their joints are mapped.
 
-    SOURCE is a .bvh or .amc file, or a folder, which is searched recursively. The error is the
-    angle between a limb of the file and the same limb of the standard skeleton.
+    SOURCE is a .bvh or .amc file, or a folder, which is searched recursively. Errors are angles
+    between limbs of the file and of the standard skeleton.
     """
     if remember and mapping_path is None:
         raise click.UsageError("--remember needs --mapping")
@@ -87,7 +89,7 @@ def _inspect(path: Path, by_hand: dict[str, str] | None, forget: bool) -> Inspec
 
 
 def _table(inspections: list[Inspection]) -> Table:
-    table = Table("file", "joints", "frames", "Hz", "found by", "mean °", "worst °", "notes")
+    table = Table("file", "joints", "frames", "Hz", "mapped by", "mean °", "worst °", "notes")
     for inspection in inspections:
         motion = inspection.motion
         has_mapping = inspection.mapping is not None
@@ -99,7 +101,7 @@ def _table(inspections: list[Inspection]) -> Table:
             inspection.found_by,
             f"{inspection.mean_error_deg:.2f}" if has_mapping else "-",
             f"{inspection.worst_error_deg:.1f}" if has_mapping else "-",
-            f"refused: {inspection.refusal}" if inspection.refusal else _notes(inspection),
+            f"rejected: {inspection.refusal}" if inspection.refusal else _notes(inspection),
         )
     return table
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Options that several commands share."""
+"""Options shared by several commands."""
 
 from __future__ import annotations
 
@@ -24,35 +24,37 @@ Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
 class Sites(click.ParamType):  # type: ignore[type-arg]
-    """A list of sensors' sites, separated by commas."""
+    """A list of sensor locations, separated by commas."""
 
     name = "SITE,..."
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[str, ...]:
-        """Returns the sites, all known and different."""
+        """Returns the locations, all known and different."""
         if isinstance(value, tuple):
             return value
         sites = tuple(site.strip() for site in str(value).split(","))
         known = site_names()
         for site in sites:
             if site not in known:
-                self.fail(f"{site!r} is no site; known are {', '.join(known)}", param, ctx)
+                self.fail(
+                    f"unknown sensor location {site!r}; choose from {', '.join(known)}", param, ctx
+                )
         if len(set(sites)) < len(sites):
-            self.fail("a site is named twice", param, ctx)
+            self.fail("a sensor location is given twice", param, ctx)
         return sites
 
 
 class PositionAlongBone(click.ParamType):  # type: ignore[type-arg]
-    """A site and where along its bone the sensor sits."""
+    """A sensor location and the sensor's position along the bone."""
 
     name = "SITE=X"
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[str, float]:
-        """Returns the site and the position."""
+        """Returns the location and the position along the bone."""
         if isinstance(value, tuple):
             return value
         site, _, text = str(value).partition("=")
@@ -62,7 +64,7 @@ class PositionAlongBone(click.ParamType):  # type: ignore[type-arg]
         except ValueError:
             position = -1.0
         if not 0.0 <= position <= 1.0:
-            self.fail(f"{text!r} is not a number from 0 (nearer the body) to 1", param, ctx)
+            self.fail(f"{text!r} is not a position from 0 (near the body) to 1", param, ctx)
         return site, position
 
 
@@ -84,7 +86,7 @@ class Setting(click.ParamType):  # type: ignore[type-arg]
 
 
 class Span(click.ParamType):  # type: ignore[type-arg]
-    """A stretch of a take."""
+    """A time span of a take."""
 
     name = "FROM:TO"
 
@@ -100,14 +102,14 @@ class Span(click.ParamType):  # type: ignore[type-arg]
         except ValueError:
             begin_s, end_s = 0.0, 0.0
         if not (begin_s < end_s and isfinite(begin_s) and isfinite(end_s)):
-            self.fail(f"{value!r} is no FROM:TO in seconds, as in 2.5:10", param, ctx)
+            self.fail(f"{value!r} is not FROM:TO in seconds, such as 2.5:10", param, ctx)
         return begin_s, end_s
 
 
 def _position_option(name: str) -> Decorator:
-    """Gives a command the parameter ``name``: sites and positions along their bones.
+    """Gives a command the parameter ``name``: locations and positions along the bones.
 
-    --place is what scripts of version 0.1 call it.
+    Scripts may still call it --place.
     """
 
     def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -121,8 +123,8 @@ def _position_option(name: str) -> Decorator:
 
         option = click.option(
             "--position-along-bone", name, type=PositionAlongBone(), multiple=True,
-            help="Where along its bone a sensor sits, from 0 (elbow, knee) to 1 (wrist, ankle; the"
-            " default): left_ankle=0.4 is nearer the knee. May be repeated.",
+            help="Position of a sensor along its bone, from 0 (elbow, knee) to 1 (wrist, ankle; the"
+            " default), as in left_ankle=0.4. Can be repeated.",
         )  # fmt: skip
         old = click.option("--place", type=PositionAlongBone(), multiple=True, hidden=True)
         return option(old(with_old_name))
@@ -135,13 +137,13 @@ position_along_bone_option: Decorator = _position_option("positions_along_bone")
 frame_option: Decorator = click.option(
     "--frame", type=click.Choice(["heading", "root", "world"]), default="heading",
     show_default=True,
-    help="What positions are relative to: root position and heading, root position and"
-    " orientation, or the world.",
+    help="Frame of the positions: root position and heading removed, root position and full"
+    " orientation removed, or world.",
 )  # fmt: skip
 
 noise_option: Decorator = click.option(
     "--noise", type=click.Choice(list(noise_presets())), default="none", show_default=True,
-    help="How far the simulated sensors are from ideal ones.",
+    help="Quality of the simulated sensors: ideal, research or consumer grade.",
 )  # fmt: skip
 
 seed_option: Decorator = click.option(
@@ -155,7 +157,7 @@ method_option: Decorator = click.option(
 
 set_option: Decorator = click.option(
     "--set", "settings", type=Setting(), multiple=True, metavar="KEY=VALUE",
-    help="Sets an option of the method; `methods` lists them. May be repeated.",
+    help="Sets an option of the method; `methods` lists them. Can be repeated.",
 )  # fmt: skip
 
 preset_option: Decorator = click.option("--preset", help="The method's settings by name.")
@@ -213,13 +215,13 @@ def positions_along_bone_of(
     for site in named:
         if site not in sites:
             raise click.BadParameter(
-                f"no sensor is at {site}", param_hint="'--position-along-bone'"
+                f"there is no sensor at {site}", param_hint="'--position-along-bone'"
             )
     return [named.get(site, 1.0) for site in sites] if named else None
 
 
 def check_ending(path: Path, *endings: str) -> str:
-    """Returns the path's ending in lower case. Raises BadParameter when it is another."""
+    """Returns the path's extension in lower case. Raises BadParameter for another one."""
     ending = path.suffix.lower()
     if ending not in endings:
         raise click.BadParameter(

@@ -13,15 +13,17 @@ from .console import print_table
 
 
 @click.command()
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print as JSON.")
 def ports(as_json: bool) -> None:
-    """Lists the serial ports and the devices behind them."""
+    """Lists the serial ports and their devices."""
     found = available_ports()
     if as_json:
         click.echo(json.dumps([port.as_json() for port in found], indent=2, ensure_ascii=False))
         return
     if not found:
-        click.echo("No serial port: plug a device in, or name a pyserial URL (socket://HOST:PORT).")
+        click.echo(
+            "No serial ports found: plug a device in, or use a pyserial URL (socket://HOST:PORT)."
+        )
         return
     table = Table("port", "device", "vendor:product", "serial number", box=None)
     for port in found:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap record``: sensors into a take."""
+"""``sparse-mocap record``: records sensors to a take."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from .console import interrupted, status_line, warn
 from .options import FilePath, check_ending
 
 FIRST_SAMPLE_TIMEOUT_S = 20.0
-_LOOK_S = 0.1
+_POLL_S = 0.1
 
 
 @click.command()
 @capture_options
-@click.option("-o", "--output", type=FilePath, required=True, help="The take file (.csv).")
-@click.option("--seconds", type=click.FloatRange(0.1, 86_400), help="Ends by itself.")
+@click.option("-o", "--output", type=FilePath, required=True, help="The take file to write (.csv).")
+@click.option("--seconds", type=click.FloatRange(0.1, 86_400), help="Stop after this time.")
 @click.option(
     "--attach", is_flag=False, flag_value=0, type=click.IntRange(min=0), metavar="[PID]",
-    help="Goes on with a capture that runs (the only one, or that of a process).",
+    help="Continue with a running capture (the only one, or the one with this process id).",
 )  # fmt: skip
 @click.option(
     "--recover", metavar="FOLDER", type=FilePath,
-    help="Makes the take from what a capture left that ended before its take was written.",
+    help="Write the take from the folder of a capture that was killed before its take was written.",
 )  # fmt: skip
 def record(
     ports: tuple[str, ...],
@@ -49,11 +49,11 @@ def record(
     attach: int | None,
     recover: Path | None,
 ) -> None:
-    """Records sensors to a take, until Ctrl-C or for a time.
+    """Records sensors to a take, until Ctrl-C or for a given time.
 
-    A process of its own captures, so nothing is lost when this one is killed: the recording goes
-    on, and --attach takes it up again. What arrives is kept in TAKE.capture beside the take until
-    the take is written.
+    Recording is done by a separate process, so that nothing is lost if this command is killed: the
+    recording continues, and --attach connects to it again. Received data stays in the folder
+    TAKE.capture, next to the take, until the take is written.
     """
     check_ending(output, ".csv")
     folder = output.with_suffix(".capture").absolute()
@@ -80,13 +80,13 @@ def record(
 
 
 def _leave(client: CaptureClient, folder: Path) -> None:
-    """Lets the capture go, whose folder goes with it where it was made for this take."""
+    """Detaches from the capture; removes its folder if it was made for this take."""
     is_ours = client.folder == folder
     if client.leave(is_kept=is_ours):
         if is_ours:
-            shutil.rmtree(folder, ignore_errors=True)  # the process may be at it as well
+            shutil.rmtree(folder, ignore_errors=True)  # the process may remove it too
     else:
-        warn([f"others are attached to the capture of process {client.session.pid}: it goes on"])
+        warn([f"capture process {client.session.pid} keeps running: other programs are attached"])
 
 
 def _started(config: CaptureConfig, folder: Path) -> CaptureClient:
@@ -94,25 +94,27 @@ def _started(config: CaptureConfig, folder: Path) -> CaptureClient:
         raise FileNotFoundError(2, "No such directory", str(folder.parent))
     running = next((s for s in sessions() if s.folder == str(folder)), None)
     if running is not None:
-        raise CaptureError(f"{folder}: is being recorded; see --attach {running.pid}")
+        raise CaptureError(f"{folder}: already recording; continue it with --attach {running.pid}")
     if folder.exists() and any(folder.iterdir()):
         raise CaptureError(
-            f"{folder}: holds a recording whose take was never written; make it with "
-            f"--recover {folder}, or remove the folder"
+            f"{folder}: contains a recording that was not saved as a take; save it with "
+            f"--recover {folder}, or delete the folder"
         )
     return start_capture(replace(config, must_record=True), folder)
 
 
 def attached(pid: int) -> CaptureClient:
-    """Attaches to the capture of a process; 0: to the only one."""
+    """Attaches to the capture with this process id; 0: to the only one."""
     running = sessions()
     chosen = [session for session in running if pid in (0, session.pid)]
     if not chosen:
-        what = f"of process {pid} " if pid else ""
-        raise CaptureError(f"no capture {what}runs that could be attached to; start one by --port")
+        which = f" with process id {pid}" if pid else ""
+        raise CaptureError(f"there is no running capture{which}; start one with --port")
     if len(chosen) > 1:
-        told = ", ".join(f"{s.pid} ({' '.join(s.ports)})" for s in chosen)
-        raise CaptureError(f"several captures run: name one by --attach PID; they are {told}")
+        running_pids = ", ".join(f"{s.pid} ({' '.join(s.ports)})" for s in chosen)
+        raise CaptureError(
+            f"several captures are running; choose one with --attach: {running_pids}"
+        )
     return CaptureClient(chosen[0])
 
 
@@ -120,8 +122,8 @@ def _recorded(
     client: CaptureClient, seconds: float | None, sites: tuple[str, ...] | None
 ) -> RecordedTake:
     """Records until Ctrl-C or the end, and returns the take."""
-    goes_on = client.status()["recording"]
-    number = goes_on["number"] if goes_on and seconds is None else client.record(seconds)["number"]
+    running = client.status()["recording"]
+    number = running["number"] if running and seconds is None else client.record(seconds)["number"]
     with interrupted() as stop, status_line() as show:
         _follow(client, stop, show)
     client.stop_recording()
@@ -129,7 +131,7 @@ def _recorded(
 
 
 def _follow(client: CaptureClient, stop: threading.Event, show: Any) -> None:
-    told: dict[int, str] = {}
+    shown: dict[int, str] = {}
     while not stop.is_set():
         status = client.status()
         recording = status["recording"]
@@ -137,15 +139,15 @@ def _follow(client: CaptureClient, stop: threading.Event, show: Any) -> None:
             return
         for index, link in enumerate(status["links"]):
             message = f"{link['state']}: {link['message']}" if link["message"] else ""
-            if message != told.get(index, ""):
-                told[index] = message
+            if message != shown.get(index, ""):
+                shown[index] = message
                 warn([message or f"{link['opened_as']}: {link['state']} again"])
         missing = sum(sensor["missing"] for sensor in status["sensors"])
         show(
             f"recording {recording['seconds']:.1f} s, {len(status['sensors'])} sensors, "
-            f"{recording['samples']} samples, {missing} lost (Ctrl-C ends it)"
+            f"{recording['samples']} samples, {missing} lost (Ctrl-C to stop)"
         )
-        time.sleep(_LOOK_S)
+        time.sleep(_POLL_S)
 
 
 def _write(output: Path, recorded: RecordedTake) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap simulate``: takes of sensors that never were."""
+"""``sparse-mocap simulate``: takes of simulated sensors."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from .options import (
 
 @click.command()
 @click.argument("clip", metavar="CLIP", type=FilePath)
-@click.option("-o", "--output", type=FilePath, required=True, help="The take file (.csv).")
+@click.option("-o", "--output", type=FilePath, required=True, help="The take file to write (.csv).")
 @click.option(
-    "--sites", type=Sites(), default=PAPER_SITES, show_default=True, help="Where sensors are worn."
+    "--sites", type=Sites(), default=PAPER_SITES, show_default=True, help="Sensor locations."
 )
 @click.option(
     "--rate", type=click.FloatRange(1, 10_000), default=100.0, show_default=True,
-    help="Samples a second.",
+    help="Samples per second.",
 )  # fmt: skip
 @noise_option
 @seed_option
@@ -49,9 +49,9 @@ def simulate(
     positions_along_bone: tuple[tuple[str, float], ...],
     with_positions: bool,
 ) -> None:
-    """Turns a motion file into a take.
+    """Simulates a take from a motion file.
 
-    It is what sensors would record while someone of the file's proportions performs the motion.
+    The take contains what sensors would record on a performer with the file's proportions.
     """
     check_ending(output, ".csv")
     motion, warnings = read_motion(clip)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Importing what other programs recorded."""
+"""Imports recordings of other programs as takes."""
 
 from __future__ import annotations
 

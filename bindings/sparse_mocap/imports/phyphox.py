@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CSV exports of phyphox, the files or their zip: one phone."""
+"""CSV exports of phyphox (files or zip): one phone."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FORCES = (
     tuple(f"{axis} (m/s^2)" for axis in "XYZ"),
 )
 _LINEAR = "Linear Acceleration x (m/s^2)"
-_TURN = tuple(f"Gyroscope {axis} (rad/s)" for axis in "xyz")
+_RATES = tuple(f"Gyroscope {axis} (rad/s)" for axis in "xyz")
 
 
 def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
@@ -33,7 +33,7 @@ def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
         raise RecordingError(
             tables[0].path,
             1,
-            "holds no acceleration with gravity; record with phyphox's 'Acceleration (with g)'",
+            "has no acceleration with gravity; record with phyphox's 'Acceleration (with g)'",
         )
     times_s, force = force_table.column(_TIME), force_table.columns(*force_names)
     check_finite(force_table, np.column_stack([times_s, force]), (_TIME, *force_names))
@@ -41,13 +41,13 @@ def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
     times_s = times_s[keep]
     turn = None
     for table in tables:
-        if table.has(*_TURN):
-            turn = interpolated(times_s, table.column(_TIME), table.columns(*_TURN))
+        if table.has(*_RATES):
+            turn = interpolated(times_s, table.column(_TIME), table.columns(*_RATES))
     return {"phone": SensorRecord(times_s, force[keep], turn)}
 
 
 def _table(text: Text) -> Table | None:
-    """Returns the table of a file of phyphox, whichever separator and decimal sign it has."""
+    """Returns the table of a phyphox file with any separator and decimal sign."""
     head = text.lines[0] if text.lines else ""
     if not head.replace('"', "").startswith(_TIME):
         return None
@@ -58,5 +58,5 @@ def _table(text: Text) -> Table | None:
         return None
     has_decimal_comma = separator != "," and any("," in line for line in text.lines[1:3])
     table = read_table(text, 0, separator, has_decimal_comma=has_decimal_comma)
-    known = [*_TURN, _LINEAR, *(name for names in _FORCES for name in names)]
+    known = [*_RATES, _LINEAR, *(name for names in _FORCES for name in names)]
     return table if any(name in known for name in table.header) else None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Recordings of others' programs, recognised by what they hold."""
+"""Recordings of other programs, recognised by their content."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ def recording_formats() -> list[str]:
 def read_recording(path: str | os.PathLike[str], sites: Mapping[str, str] | None = None) -> Take:
     """Returns the take in a recording: a file, a folder or a zip.
 
-    The format is recognised by its content. Sensors keep their own names but for those that
-    ``sites`` gives a site to. Times begin at 0. What was converted or restored is in the take's
-    comments. Raises RecordingError and OSError.
+    The format is recognised by its content. Sensors keep their own names unless ``sites`` has a
+    site for them. Times begin at 0. The take's comments list all conversions. Raises RecordingError
+    and OSError.
     """
     if not os.path.exists(path):
         raise FileNotFoundError(2, "No such file or directory", os.fspath(path))
@@ -55,7 +55,7 @@ def read_recording(path: str | os.PathLike[str], sites: Mapping[str, str] | None
             named = _named(path, _from_zero(records), sites or {})
             return Take(named, (origin, *dict.fromkeys(notes)))
     raise RecordingError(
-        path, 0, f"is no recording that is known ({_seen(texts)}); known are "
+        path, 0, f"unknown recording format ({_content(texts)}); supported are "
         + ", ".join(recording_formats())
     )  # fmt: skip
 
@@ -83,12 +83,14 @@ def _named(
         )
     named = {sites.get(name, name).replace(",", " "): record for name, record in records.items()}
     if len(named) < len(records):
-        raise RecordingError(path, 0, "two of its sensors would have one name; give other sites")
+        raise RecordingError(
+            path, 0, "two of its sensors would have the same name; choose other locations"
+        )
     return named
 
 
-def _seen(texts: list[Text]) -> str:
+def _content(texts: list[Text]) -> str:
     if not texts:
-        return "it holds no .csv, .txt or .json"
+        return "it contains no .csv, .txt or .json"
     first = next((line for line in texts[0].lines if line.strip()), "")
-    return f"{len(texts)} text files, the first begins with {shown(first)}"
+    return f"{len(texts)} text files, the first starts with {shown(first)}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Exports of the app Sensor Logger: CSV files, or their zip; one phone."""
+"""CSV exports of the app Sensor Logger (files or zip): one phone."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
     size = float(np.median(np.linalg.norm(force, axis=1)))
     if 0.5 < size < 2.0:
         force = force * STANDARD_GRAVITY_MPS2
-        notes.append("accelerations are in g")
+        notes.append("accelerations were converted from g")
     if _is_of_an_iphone(texts):
         force = -force
-        notes.append("an iPhone's accelerations have the opposite sign")
+        notes.append("accelerations were negated, since an iPhone reports the opposite sign")
     turn = orientation = None
     if "gyroscope" in tables:
         table = tables["gyroscope"]
@@ -65,7 +65,7 @@ def _specific_force(tables: dict[str, Table]) -> tuple[Floats, Floats]:
     raise RecordingError(
         table.path,
         1,
-        "holds no acceleration with gravity; record TotalAcceleration too",
+        "has no acceleration with gravity; record TotalAcceleration too",
     )
 
 
@@ -77,11 +77,11 @@ def _checked(table: Table) -> tuple[Floats, Floats]:
 
 
 def _is_of_an_iphone(texts: list[Text]) -> bool:
-    """Whether the axes are an iPhone's own: the option to standardise frames was off."""
+    """Whether the axes are an iPhone's own, because the option to standardise frames was off."""
     for text in texts:
         if text.name.lower() == "metadata" and len(text.lines) > 1:
             table = read_table(text, 0, ",")
-            told = dict(zip(table.header, table.rows[0], strict=True))
-            is_standardised = told.get("standardisation", "false").strip().lower() == "true"
-            return told.get("platform", "").strip().lower() == "ios" and not is_standardised
+            metadata = dict(zip(table.header, table.rows[0], strict=True))
+            is_standardised = metadata.get("standardisation", "false").strip().lower() == "true"
+            return metadata.get("platform", "").strip().lower() == "ios" and not is_standardised
     return False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The texts of a recording and the tables in them, checked cell by cell."""
+"""The text files of a recording and their tables, checked cell by cell."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class RecordingError(TableError):
 
 @dataclass(frozen=True)
 class Text:
-    """A file of a recording: where it is, and its lines."""
+    """A text file of a recording: its path and lines."""
 
     path: str
     lines: list[str]
@@ -47,11 +47,11 @@ class Table:
     header: list[str]
     rows: list[list[str]]
     first_line: int
-    """Of the rows, in the file, from 1."""
+    """Line number of the first row in the file, from 1."""
     has_decimal_comma: bool = False
 
     def has(self, *names: str) -> bool:
-        """Whether all these columns are there."""
+        """Whether the table has all these columns."""
         return all(name in self.header for name in names)
 
     def column(self, name: str) -> Floats:
@@ -66,7 +66,9 @@ class Table:
                 values[row] = float(text) if text else np.nan
             except ValueError:
                 raise RecordingError(
-                    self.path, self.first_line + row, f"{name} is {text[:40]!r}, which is no number"
+                    self.path,
+                    self.first_line + row,
+                    f"{name} is {text[:40]!r}, which is not a number",
                 ) from None
         return values
 
@@ -76,20 +78,20 @@ class Table:
 
 
 def read_texts(path: str | os.PathLike[str]) -> list[Text]:
-    """Returns the text files that a file, folder or zip is or holds, sorted by name."""
-    place = Path(path)
-    if place.is_dir():
-        files = sorted(file for file in place.rglob("*") if file.suffix.lower() in _ENDINGS)
-        _check_size(place, len(files), sum(file.stat().st_size for file in files))
+    """Returns the text files of a recording (a file, folder or zip), sorted by name."""
+    source = Path(path)
+    if source.is_dir():
+        files = sorted(file for file in source.rglob("*") if file.suffix.lower() in _ENDINGS)
+        _check_size(source, len(files), sum(file.stat().st_size for file in files))
         return [_text(str(file), file.read_bytes()) for file in files]
-    if zipfile.is_zipfile(place):
-        with zipfile.ZipFile(place) as archive:
+    if zipfile.is_zipfile(source):
+        with zipfile.ZipFile(source) as archive:
             infos = [info for info in archive.infolist() if _is_text_name(info.filename)]
-            _check_size(place, len(infos), sum(info.file_size for info in infos))
+            _check_size(source, len(infos), sum(info.file_size for info in infos))
             infos.sort(key=lambda info: info.filename)
-            return [_text(f"{place}/{info.filename}", archive.read(info)) for info in infos]
-    _check_size(place, 1, place.stat().st_size)
-    return [_text(str(place), place.read_bytes())]
+            return [_text(f"{source}/{info.filename}", archive.read(info)) for info in infos]
+    _check_size(source, 1, source.stat().st_size)
+    return [_text(str(source), source.read_bytes())]
 
 
 def read_table(
@@ -108,12 +110,14 @@ def read_table(
                 f"expected {len(header)} cells as in the header, got {len(cells)}",
             )
     if not rows:
-        raise RecordingError(text.path, header_at + 1, "no samples follow the header")
+        raise RecordingError(
+            text.path, header_at + 1, "there are no samples after the header; record again"
+        )
     return Table(text.path, header, rows, header_at + 2, has_decimal_comma)
 
 
 def find_line(text: Text, *words: str) -> int | None:
-    """Returns the first of the leading lines (from 0) that holds all these words."""
+    """Returns the first line (from 0) near the start that contains all these words."""
     for number, line in enumerate(text.lines[:50]):
         if all(word in line for word in words):
             return number
@@ -121,19 +125,19 @@ def find_line(text: Text, *words: str) -> int | None:
 
 
 def unwrapped(counts: Floats, bits: int) -> Floats:
-    """Returns the counts of a counter of a few bits as counts that go on."""
+    """Returns the unwrapped counts of a counter of a few bits."""
     steps = np.diff(counts)
     wrap = 2.0**bits
     return counts + np.concatenate([[0.0], np.cumsum(np.where(steps < -wrap / 2, wrap, 0.0))])
 
 
 def interpolated(wanted_s: Floats, times_s: Floats, values: Floats) -> Floats:
-    """Returns values (T, C) at other times, held beyond the ends."""
+    """Returns values (T, C) interpolated at other times, constant beyond the ends."""
     return np.column_stack([np.interp(wanted_s, times_s, column) for column in values.T])
 
 
 def shown(line: str) -> str:
-    """Returns a line as error messages show it."""
+    """Returns a line, shortened for error messages."""
     return repr(line.strip()[:60])
 
 
@@ -152,7 +156,7 @@ def _is_text_name(name: str) -> bool:
 def _check_size(path: Path, num_files: int, num_bytes: int) -> None:
     if num_files > _MOST_FILES or num_bytes > _MOST_BYTES:
         raise RecordingError(
-            path, 0, f"holds {num_files} files of {num_bytes} bytes; name one recording"
+            path, 0, f"has {num_files} files of {num_bytes} bytes; choose a single recording"
         )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Log folders of x-IMU3: a folder a device, with Inertial.csv and Quaternion.csv."""
+"""x-IMU3 log folders: one folder for each device, with Inertial.csv and Quaternion.csv."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ NAME = "x-IMU3 log folder"
 
 _TIME = "Timestamp (us)"
 _FORCE = ("Accelerometer X (g)", "Accelerometer Y (g)", "Accelerometer Z (g)")
-_TURN = ("Gyroscope X (deg/s)", "Gyroscope Y (deg/s)", "Gyroscope Z (deg/s)")
+_RATES = ("Gyroscope X (deg/s)", "Gyroscope Y (deg/s)", "Gyroscope Z (deg/s)")
 
 
 def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
-    """Returns a record for each device, named by it; None when it is another format."""
+    """Returns a record for each device under its name; None when it is another format."""
     records = {}
     for text in texts:
         at = find_line(text, _TIME, "Accelerometer X (g)")
@@ -34,7 +34,9 @@ def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
             }
             records[_device_name(text, beside.get("command.json"))] = _record(text, at, beside)
     if len(records) > 1:
-        notes.append("the devices' own clocks are kept; they are synchronised if the devices were")
+        notes.append(
+            "times are from the devices' own clocks, which match only if they were synchronised"
+        )
     return records or None
 
 
@@ -50,12 +52,12 @@ def _record(text: Text, at: int, beside: dict[str, Text]) -> SensorRecord:
         turns = read_table(beside["quaternion.csv"], 0, ",")
         values = from_z_up(normalised(turns.columns("W", "X", "Y", "Z")))
         orientation = interpolated(times_s, turns.column(_TIME) * 1e-6, values)
-    turn = np.radians(table.columns(*_TURN))[keep] if table.has(*_TURN) else None
+    turn = np.radians(table.columns(*_RATES))[keep] if table.has(*_RATES) else None
     return SensorRecord(times_s, force[keep], turn, orientation)
 
 
 def _device_name(text: Text, command: Text | None) -> str:
-    """Returns the name that the device told, else that of its folder."""
+    """Returns the name in the device's reply, else that of its folder."""
     try:
         replies = json.loads("\n".join(command.lines)) if command else []
         for reply in replies:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CSV exports of Movella (Xsens) DOT: one file a sensor."""
+"""CSV exports of Movella (Xsens) DOT: one file for each sensor."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ NAME = "Movella DOT CSV"
 _QUATERNION = ("Quat_W", "Quat_X", "Quat_Y", "Quat_Z")
 _FREE = ("FreeAcc_X", "FreeAcc_Y", "FreeAcc_Z")
 _FORCE = ("Acc_X", "Acc_Y", "Acc_Z")
-_TURN = ("Gyr_X", "Gyr_Y", "Gyr_Z")
+_RATES = ("Gyr_X", "Gyr_Y", "Gyr_Z")
 _TICK_S = 1e-6
 
 
@@ -54,7 +54,7 @@ def _record(table: Table, times_s: Floats, notes: list[str]) -> SensorRecord:
         force = table.columns(*_FORCE)
     elif table.has(*_FREE) and rotation is not None:
         force = with_gravity(rotation, table.columns(*_FREE))
-        notes.append("gravity was put back by the sensors' own orientation")
+        notes.append("gravity was added using the sensors' own orientation")
     else:
         raise RecordingError(
             table.path,
@@ -63,7 +63,7 @@ def _record(table: Table, times_s: Floats, notes: list[str]) -> SensorRecord:
         )
     check_finite(table, force, _FORCE)
     keep = np.concatenate([[True], np.diff(times_s) > 0])
-    turn = np.radians(table.columns(*_TURN)) if table.has(*_TURN) else None
+    turn = np.radians(table.columns(*_RATES)) if table.has(*_RATES) else None
     return SensorRecord(
         times_s[keep],
         force[keep],

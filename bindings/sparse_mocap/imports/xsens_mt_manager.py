@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Text exports of Xsens MT Manager: one file a sensor, tab-separated under // comments."""
+"""Text exports of Xsens MT Manager: one tab-separated file for each sensor."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NAME = "Xsens MT Manager text"
 
 _FORCE = ("Acc_X", "Acc_Y", "Acc_Z")
 _FREE = ("FreeAcc_E", "FreeAcc_N", "FreeAcc_U")
-_TURN = ("Gyr_X", "Gyr_Y", "Gyr_Z")
+_RATES = ("Gyr_X", "Gyr_Y", "Gyr_Z")
 _MATRIX = tuple(f"Mat[{row}][{column}]" for column in (1, 2, 3) for row in (1, 2, 3))
 _QUATERNIONS = (
     ("Quat_q0", "Quat_q1", "Quat_q2", "Quat_q3"),
@@ -56,14 +56,14 @@ def _record(table: Table, times_s: Floats, notes: list[str]) -> SensorRecord:
         force = table.columns(*_FORCE)
     elif table.has(*_FREE) and rotation is not None:
         force = with_gravity(rotation, table.columns(*_FREE))
-        notes.append("gravity was put back by the sensors' own orientation")
+        notes.append("gravity was added using the sensors' own orientation")
     else:
         raise RecordingError(
             table.path, table.first_line - 1, "has no column Acc_X; export the acceleration"
         )
     check_finite(table, force, _FORCE)
     keep = np.concatenate([[True], np.diff(times_s) > 0])
-    turn = table.columns(*_TURN) if table.has(*_TURN) else None
+    turn = table.columns(*_RATES) if table.has(*_RATES) else None
     return SensorRecord(
         times_s[keep],
         force[keep],
@@ -85,9 +85,9 @@ def _rotation(table: Table) -> Floats | None:
 
 def _rate_hz(text: Text) -> float:
     for line in text.lines[:20]:
-        told = re.match(r"//\s*Update Rate:\s*([0-9.]+)\s*Hz", line)
-        if told and float(told[1]) > 0:
-            return float(told[1])
+        match = re.match(r"//\s*Update Rate:\s*([0-9.]+)\s*Hz", line)
+        if match and float(match[1]) > 0:
+            return float(match[1])
     raise RecordingError(text.path, 0, "has no line '// Update Rate: ...Hz'; export it again")
 
 

@@ -111,7 +111,7 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
     throw FormatError({path},
                       "has " + std::to_string(size) + " bytes, more than the limit of " +
                           std::to_string(max_bytes),
-                      "raise the limit max_bytes if it is meant so");
+                      "raise the limit max_bytes if that is intended");
   }
   std::FILE* file = std::fopen(path.string().c_str(), "rb");
   if (file == nullptr) {

@@ -20,7 +20,7 @@ namespace sparse_mocap {
 // As many threads as there are processors when wanted is 0.
 int num_threads_or_all(int wanted);
 
-// Calls work(0), work(1), ... work(count - 1) on several threads, in rising order of their starts.
+// Calls work(0), work(1), ... work(count - 1) on several threads, started in ascending order.
 // The destructor asks work to stop (by the token) and waits for it.
 class OrderedWork {
  public:
@@ -31,7 +31,7 @@ class OrderedWork {
   OrderedWork& operator=(const OrderedWork&) = delete;
   ~OrderedWork();
 
-  // Waits for piece i as long as that and tells whether it is done. Throws what the piece threw.
+  // Waits at most that long for piece i; returns whether it is done. Throws what the piece threw.
   bool wait_for(std::size_t i, std::chrono::milliseconds patience);
 
  private:
@@ -43,16 +43,16 @@ class OrderedWork {
   std::condition_variable finished_;
   std::vector<bool> is_done_;
   std::vector<std::exception_ptr> errors_;
-  std::vector<std::jthread> threads_;  // last: they end before what they use
+  std::vector<std::jthread> threads_;  // last member: destroyed before what the threads use
 };
 
-// The results of work(i, stop) for i in [0, count), made on several threads and handed over by
-// take(i, result) on the calling thread in rising order, so that what comes of it does not depend
-// on the number of threads. waiting(i) is called on the calling thread before each take, and now
-// and then while the i-th result is not there yet. What work throws comes out by its turn; whatever
-// comes out stops the threads.
-template <typename Work, typename Take, typename Waiting>
-void work_in_order(std::size_t count, int num_threads, const Work& work, const Take& take,
+// Runs work(i, stop) for i in [0, count) on several threads and passes the results to
+// consume(i, result) on the calling thread in ascending order, so that the outcome does not depend
+// on the number of threads. waiting(i) is called on the calling thread before each consume, and
+// repeatedly while the i-th result is not ready. An exception of work is thrown when its turn
+// comes; any exception stops the threads.
+template <typename Work, typename Consume, typename Waiting>
+void work_in_order(std::size_t count, int num_threads, const Work& work, const Consume& consume,
                    const Waiting& waiting) {
   using Result = std::invoke_result_t<Work, std::size_t, const std::stop_token&>;
   constexpr std::chrono::milliseconds kPatience{200};
@@ -63,7 +63,7 @@ void work_in_order(std::size_t count, int num_threads, const Work& work, const T
   for (std::size_t i = 0; i < count; ++i) {
     waiting(i);
     while (!pieces.wait_for(i, kPatience)) waiting(i);
-    take(i, std::move(*results[i]));
+    consume(i, std::move(*results[i]));
     results[i].reset();
   }
 }

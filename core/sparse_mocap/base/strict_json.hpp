@@ -7,7 +7,7 @@
 namespace sparse_mocap {
 
 // The value that the text holds. Refuses repeated keys, which would let two readers see two
-// different files, and NUL, which the parser takes for the end of the text.
+// different files, and NUL, which the parser treats as the end of the text.
 // Throws std::invalid_argument: "is not JSON", "repeats the key 'x'".
 nlohmann::json parse_json_strictly(const std::string& text);
 

@@ -15,8 +15,8 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-// Whether a well-formed decimal that does not fit a double is too small rather than too large:
-// the power of ten of its leading digit tells.
+// Whether a well-formed decimal that does not fit a double is too small rather than too large,
+// judging by the power of ten of its leading digit.
 bool is_tiny(std::string_view text) {
   const auto exponent_at = text.find_first_of("eE");
   const auto mantissa = text.substr(0, exponent_at);
@@ -34,7 +34,7 @@ bool is_tiny(std::string_view text) {
 }
 
 // Reads a number at the start of [begin, end). Returns the end of it, nullptr where there is none.
-// std::from_chars alone would take "nan" and "inf" and refuse a leading '+'.
+// std::from_chars alone would accept "nan" and "inf" and reject a leading '+'.
 const char* parse_number_prefix(const char* begin, const char* end, double& value,
                                 NumberStatus& status) {
   status = NumberStatus::malformed;
@@ -202,7 +202,7 @@ double TextScanner::number_or_fail(std::string_view token, std::string_view what
   if (token.empty())
     fail(token, expected + "but the file ends", "the file may be cut off; export it again");
   if (status == NumberStatus::too_large)
-    fail(token, in_quotes(token) + " is too large a number", "check the number");
+    fail(token, in_quotes(token) + " is too large", "check the number");
   const char* remedy = has_decimal_comma(token)
                            ? "it has a decimal comma; write numbers with a point"
                            : "write a decimal number such as -1.5";

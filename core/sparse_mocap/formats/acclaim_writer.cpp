@@ -21,7 +21,7 @@ constexpr double kLengthUnit = 0.45;  // a value of the file is value / kLengthU
 constexpr double kUnitsPerMetre = kLengthUnit / 0.0254;
 constexpr int kSkeletonDigits = 12;
 constexpr int kMotionDecimals = 6;  // 6e-8 m and 2e-8 rad
-// A rotation this close (of the matrices' numbers) to one that the axes allow is one.
+// Rotations that differ by less than this (largest matrix element) count as equal.
 constexpr double kSameRotation = 1e-8;
 constexpr double kShortestFrame_s = 1e-4;
 constexpr double kLongestFrame_s = 1.0;
@@ -46,7 +46,7 @@ void append_digits(std::string& text, double value) {
   text.append(digits.data(), end);
 }
 
-// Without zeros at the end: the files are as short as those of the world.
+// Without trailing zeros, as in other programs' files.
 void append_decimals(std::string& text, double value) {
   std::array<char, 64> digits{};
   const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value,
@@ -64,7 +64,7 @@ std::string writable_name(std::string name) {
     char& c = name[i];
     const bool is_blank_or_control = static_cast<unsigned char>(c) <= ' ' || c == '\x7F';
     const bool is_special = kSpecial.find(c) != std::string_view::npos;
-    // In the middle of a word a colon is a letter like others.
+    // Inside a word, a colon is an ordinary character.
     if (is_blank_or_control || (is_special && (c != ':' || i == 0))) c = '_';
   }
   double ignored = 0.0;
@@ -139,8 +139,8 @@ void AcclaimWriter::check() const {
   for (const auto& track : motion_.offset_tracks)
     has_places = has_places && std::ranges::all_of(track.offset_parent, is_place);
   if (!has_places || !std::ranges::all_of(motion_.rotations, is_fine))
-    refuse("a length or a rotation that is not finite, or a place beyond 100 km",
-           "leave those frames out");
+    refuse("a length or a rotation that is not finite, or a position beyond 100 km",
+           "remove those frames");
 }
 
 void AcclaimWriter::make_bones() {
@@ -295,7 +295,7 @@ std::string AcclaimWriter::amc() const {
   return text;
 }
 
-// angles: of every bone in the frame before, and then in this one.
+// angles: of every bone, on entry in the frame before, on return in this one.
 void AcclaimWriter::append_frame(std::string& text, int frame,
                                  std::vector<std::array<double, 3>>& angles) const {
   text += std::to_string(frame + 1) + "\n";

@@ -85,12 +85,12 @@ MotionFile AmcReader::read() {
   read_header();
   while (!scanner_.at_end()) read_frame();
   if (file_.motion.num_frames() == 0 && !options_.allow_no_frames)
-    scanner_.fail(scanner_.here(), "there is no frame, so there is no motion",
-                  "export the frames, or ask for the skeleton alone");
+    scanner_.fail(scanner_.here(), "the file has no frames",
+                  "export the frames, or read only the skeleton");
   if (missing_frames_ > 0)
-    add_warning(file_.warnings, {scanner_.path()},
-                std::to_string(missing_frames_) +
-                    " frame numbers are missing; the frames around are joined");
+    add_warning(
+        file_.warnings, {scanner_.path()},
+        std::to_string(missing_frames_) + " frame numbers are missing; the gaps are closed");
   if (has_stretch_)
     add_warning(file_.warnings, {scanner_.path()},
                 "channel l (stretch of a bone) is not zero; it is ignored");
@@ -114,7 +114,7 @@ void AmcReader::read_header() {
     } else if (equal_ignoring_case(keyword, ":SAMPLES-PER-SECOND")) {
       read_sample_rate();
     } else {
-      warn(keyword, in_quotes(keyword) + " is not known; it is ignored");
+      warn(keyword, in_quotes(keyword) + " is unknown; it is ignored");
       scanner_.rest_of_line();
     }
   }
@@ -152,7 +152,7 @@ void AmcReader::read_frame_number() {
   const auto next = static_cast<long long>(number);
   if (file_.motion.num_frames() > 0) {
     if (next == frame_number_)
-      scanner_.fail(token, frame_name() + " is there twice", "remove one of them");
+      scanner_.fail(token, frame_name() + " occurs twice", "remove one of them");
     if (next < frame_number_)
       scanner_.fail(
           token, "frame number " + std::string(token) + " follows " + std::to_string(frame_number_),
@@ -172,7 +172,7 @@ void AmcReader::read_frame() {
   const int most = max_frames_of(motion.skeleton.num_joints(), options_);
   if (motion.num_frames() >= most)
     scanner_.fail(frame_token, "there are more frames than the limit of " + std::to_string(most),
-                  "raise the limit max_frames if it is meant so");
+                  "raise the limit max_frames if that is intended");
   motion.rotations.resize(motion.rotations.size() + R_axes_.size(), Quat::Identity());
   motion.root_positions.emplace_back(skeleton_.root_position);
   for (auto& track : motion.offset_tracks) track.offset_parent.emplace_back(Vec3::Zero());
@@ -186,7 +186,7 @@ void AmcReader::read_frame() {
 void AmcReader::read_bone_line(std::string_view name) {
   const auto joint = static_cast<std::size_t>(joint_named(name));
   if (is_given_[joint])
-    scanner_.fail(name, "bone " + in_quotes(name) + " is twice in " + frame_name(),
+    scanner_.fail(name, "bone " + in_quotes(name) + " occurs twice in " + frame_name(),
                   "remove one of the lines");
   is_given_[joint] = 1;
   const auto& channels = skeleton_.channels[joint];
@@ -211,7 +211,7 @@ int AmcReader::joint_named(std::string_view name) {
   const auto found = joint_by_name_.find(lower_case(escaped_to_utf8(name)));
   if (found == joint_by_name_.end())
     scanner_.fail(name, "bone " + in_quotes(name) + " is not in " + skeleton_.path.string(),
-                  "the .asf belongs to another actor or system");
+                  "use the .asf of this actor");
   if (line >= line_order_.size()) line_order_.push_back(found->second);
   return found->second;
 }
@@ -241,7 +241,7 @@ Vec3 AmcReader::translation(std::size_t joint, const Values& values) const {
       result[static_cast<int>(channels[i]) - static_cast<int>(AcclaimChannel::tx)] =
           values[i] * skeleton_.metres_per_unit;
   if (result.cwiseAbs().maxCoeff() > kMaxLength_m)
-    scanner_.fail(scanner_.here(), "a position in " + frame_name() + " is too large to be a place",
+    scanner_.fail(scanner_.here(), "a position in " + frame_name() + " is out of range",
                   "check the number and the unit of the .asf");
   return result;
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr double kInch_m = 0.0254;
 constexpr int kRoot = 0;  // node 0 is the root, node i + 1 is bone i of the file
 
-// Who belongs to whom, by node.
+// The parents and children of each node.
 struct Tree {
   std::vector<int> parents;                // -1: none
   std::vector<std::vector<int>> children;  // in the order of the file
@@ -73,7 +73,7 @@ std::vector<int> depth_first_order(const TextScanner& scanner, const AsfSections
     if (depth >= max_depth && !children.empty())
       scanner.fail(sections.bones[static_cast<std::size_t>(children[0]) - 1].token,
                    "bones are nested deeper than " + std::to_string(max_depth),
-                   "raise the limit max_depth if it is meant so");
+                   "raise the limit max_depth if that is intended");
     for (auto child = children.rbegin(); child != children.rend(); ++child)
       pending.push_back({*child, depth + 1});
   }
@@ -139,7 +139,7 @@ void build_skeleton(const TextScanner& scanner, const AsfSections& sections,
     joint_of_node[node] = static_cast<int>(joints.size());
     joints.push_back(joint_of(bone, parent, R_preset, result));
     if (joints.back().bone.cwiseAbs().maxCoeff() > kMaxLength_m)
-      scanner.fail(bone.token, "bone " + in_quotes(bone.name) + " is too long to be a length",
+      scanner.fail(bone.token, "bone " + in_quotes(bone.name) + " is impossibly long",
                    "check its length and the unit of the file");
     result.channels.push_back(bone.channels);
   }
@@ -164,7 +164,7 @@ AcclaimSkeleton asf_from_text(std::string text, const std::filesystem::path& pat
   result.radians_per_angle = sections.is_in_degrees ? kRadiansPerDegree : 1.0;
   result.root_position = sections.root.position * result.metres_per_unit;
   if (result.root_position.cwiseAbs().maxCoeff() > kMaxLength_m)
-    scanner.fail(sections.root.position_key, "the position of the root is too large to be a place",
+    scanner.fail(sections.root.position_key, "the position of the root is out of range",
                  "check the number and the unit of the file");
   build_skeleton(scanner, sections, options, result);
   warn_about_size(rest_pose(result.skeleton), result.metres_per_unit, {path}, result.warnings);
@@ -192,9 +192,9 @@ std::filesystem::path find_asf(const std::filesystem::path& amc_path) {
   const std::string problem = asf_by_stem.empty()
                                   ? "there is no .asf in " + folder.string()
                                   : "none of the " + std::to_string(asf_by_stem.size()) +
-                                        " .asf in " + folder.string() + " belongs to it";
+                                        " .asf in " + folder.string() + " matches its name";
   throw FormatError({amc_path}, problem + "; looked for " + wanted,
-                    "an .amc needs the .asf of its actor beside it");
+                    "put the .asf of its actor into the same folder");
 }
 
 }  // namespace sparse_mocap

@@ -8,12 +8,12 @@
 namespace sparse_mocap {
 namespace {
 
-// What to do about what is wrong.
+// Remedies in error messages.
 constexpr const char* kExportAgain = "the file may be cut off; export it again";
 constexpr const char* kRemoveOne = "remove one of them";
 constexpr const char* kRename = "give it another name";
 
-constexpr double kUnitTolerance = 1e-3;  // directions have six digits in the files of the world
+constexpr double kUnitTolerance = 1e-3;  // directions usually have six digits
 
 struct ChannelName {
   std::string_view name;
@@ -115,7 +115,7 @@ void SectionReader::read_section(std::string_view keyword) {
     begin_once(has_hierarchy_);
     read_hierarchy();
   } else {
-    // :version, :name, :documentation, :skin and what else there may be say nothing about motion.
+    // :version, :name, :documentation, :skin and others are not needed for the motion.
     skip_section();
   }
 }
@@ -132,7 +132,7 @@ void SectionReader::skip_section() {
 }
 
 void SectionReader::skip_unknown(std::string_view key, std::string_view section) {
-  warn(key, in_quotes(key) + " is not known in " + std::string(section) + "; it is ignored");
+  warn(key, in_quotes(key) + " is unknown in " + std::string(section) + "; it is ignored");
   scanner_.rest_of_line();
 }
 
@@ -207,7 +207,8 @@ std::vector<AcclaimChannel> SectionReader::read_channels(bool is_root) {
     const auto* known =
         std::ranges::find_if(kChannelNames, [&](const auto& c) { return is_word(token, c.name); });
     if (known == kChannelNames.end() || (is_root && known->channel == AcclaimChannel::length))
-      scanner_.fail(token, "unknown channel " + in_quotes(token), "known are rx ry rz tx ty tz l");
+      scanner_.fail(token, "unknown channel " + in_quotes(token),
+                    "use rx, ry, rz, tx, ty, tz or l");
     if (std::ranges::count(channels, known->channel) > 0)
       scanner_.fail(token, "channel " + in_quotes(token) + " is listed twice", kRemoveOne);
     channels.push_back(known->channel);
@@ -228,7 +229,7 @@ void SectionReader::read_bones() {
     expect_word("begin");
     if (static_cast<int>(sections_.bones.size()) + 1 >= options_.max_joints)
       scanner_.fail(begin, "there are more than " + std::to_string(options_.max_joints) + " bones",
-                    "raise the limit max_joints if it is meant so");
+                    "raise the limit max_joints if that is intended");
     read_bone(begin);
   }
 }
@@ -262,7 +263,7 @@ void SectionReader::read_bone_item(std::string_view key, AsfBone& bone) {
     const auto token = scanner_.peek();
     bone.length = scanner_.number("a number after length");
     if (bone.length < 0)
-      scanner_.fail(token, "the length of a bone is negative", "turn its direction round");
+      scanner_.fail(token, "the length of a bone is negative", "reverse its direction instead");
   } else if (is_word(key, "axis")) {
     bone.axis_angles = read_vector("3 numbers after axis");
     bone.axis_order = read_axis_order();
@@ -279,8 +280,7 @@ void SectionReader::read_bone_item(std::string_view key, AsfBone& bone) {
 
 void SectionReader::check_bone(AsfBone& bone, std::string_view begin) {
   if (bone.name.empty()) scanner_.fail(begin, "a bone has no name", "add a line with its name");
-  if (is_word(bone.name, "root"))
-    scanner_.fail(bone.token, "a bone cannot be called root", kRename);
+  if (is_word(bone.name, "root")) scanner_.fail(bone.token, "a bone cannot be named root", kRename);
   const double norm = bone.direction.stableNorm();
   if (norm == 0.0) {
     if (bone.length > 0.0)
@@ -294,7 +294,7 @@ void SectionReader::check_bone(AsfBone& bone, std::string_view begin) {
        "the direction of bone " + in_quotes(bone.name) + " is not a unit vector; it is normalised");
 }
 
-// Pairs of numbers, one a channel, on as many lines as it takes.
+// Pairs of numbers, one for each channel, on any number of lines.
 void SectionReader::read_limits(std::string_view key, AsfBone& bone) {
   bone.limits = key;
   bone.num_limits = 0;

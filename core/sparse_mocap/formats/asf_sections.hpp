@@ -11,7 +11,7 @@
 
 namespace sparse_mocap {
 
-// The sections of an .asf as they stand there: units of the file, names unresolved, since the
+// The sections of an .asf as in the file: units of the file, names unresolved, since the
 // sections may come in any order.
 
 struct AsfBone {

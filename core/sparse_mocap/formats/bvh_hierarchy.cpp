@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxChannels = 6;
 
-// What to do about what is wrong.
+// Remedies in error messages.
 constexpr const char* kExportAgain = "the file may be cut off; export it again";
 constexpr const char* kCheckBraces = "check the braces before it";
 constexpr const char* kRemoveOne = "remove one of them";
@@ -39,15 +39,15 @@ bool is_word(std::string_view token, std::string_view word) {
   return equal_ignoring_case(token, word);
 }
 
-// A pair of braces that is open: a joint's, or an End Site's of that joint.
+// An open pair of braces, of a joint or of its End Site.
 struct OpenBlock {
   int joint = 0;
   bool is_end_site = false;
   bool has_offset = false;  // of an End Site
 };
 
-// The state of reading the tree. Blocks are kept on a stack of its own, so that depth costs no
-// machine stack, and joints are named by index, so that the vector may grow.
+// Reads the tree. Open blocks are kept in a vector, so that deep files cannot overflow the call
+// stack, and joints are referred to by index, since their vector grows.
 class HierarchyReader {
  public:
   HierarchyReader(TextScanner& scanner, const ReadOptions& options,
@@ -171,7 +171,7 @@ void HierarchyReader::read_end_site_item(std::string_view token) {
 void HierarchyReader::open_joint(std::string_view keyword) {
   if (static_cast<int>(joints_.size()) >= options_.max_joints)
     scanner_.fail(keyword, "there are more than " + std::to_string(options_.max_joints) + " joints",
-                  "raise the limit max_joints if it is meant so");
+                  "raise the limit max_joints if that is intended");
   BvhJoint opened;
   opened.name = read_name(keyword);
   opened.location = scanner_.location(keyword);
@@ -184,7 +184,7 @@ void HierarchyReader::open_joint(std::string_view keyword) {
   push_block(keyword, {static_cast<int>(joints_.size()) - 1});
 }
 
-// "End Site" or "End Site AnyName"; whatever its name, it ends the joint that it stands in.
+// "End Site" or "End Site AnyName"; the name is ignored.
 void HierarchyReader::open_end_site() {
   const int parent = blocks_.back().joint;
   std::string_view token = scanner_.peek();
@@ -197,7 +197,7 @@ void HierarchyReader::open_end_site() {
 void HierarchyReader::push_block(std::string_view keyword, OpenBlock block) {
   if (static_cast<int>(blocks_.size()) >= options_.max_depth + (block.is_end_site ? 1 : 0))
     scanner_.fail(keyword, "joints are nested deeper than " + std::to_string(options_.max_depth),
-                  "raise the limit max_depth if it is meant so");
+                  "raise the limit max_depth if that is intended");
   blocks_.push_back(block);
 }
 
@@ -207,7 +207,7 @@ void HierarchyReader::close_block(std::string_view token) {
   auto& closed = joint(block.joint);
   if (block.is_end_site) {
     if (block.has_offset) return;
-    warn(scanner_.location(token), "an End Site without OFFSET; it is taken as zero");
+    warn(scanner_.location(token), "an End Site without OFFSET; zero is used");
     if (!closed.end_site) closed.end_site = Vec3::Zero();
     return;
   }
@@ -276,7 +276,7 @@ void HierarchyReader::read_channels(std::string_view keyword) {
     const auto* channel = find_channel(token);
     if (channel == nullptr)
       scanner_.fail(token, "unknown channel " + in_quotes(token),
-                    "known are Xposition to Zposition and Xrotation to Zrotation");
+                    "use Xposition to Zposition and Xrotation to Zrotation");
     const auto is_same = [&](const BvhChannel& other) {
       return other.is_rotation == channel->is_rotation && other.axis == channel->axis;
     };

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kShortestFrame_s = 1e-4;
 constexpr double kLongestFrame_s = 1.0;
-constexpr const char* kRaiseFrames = "raise the limit max_frames if it is meant so";
+constexpr const char* kRaiseFrames = "raise the limit max_frames if that is intended";
 constexpr const char* kCompareChannels = "compare the row with the joints' CHANNELS";
 // A joint whose position channels stay this close to its OFFSET does not move.
 constexpr double kSameOffset_m = 1e-7;
@@ -62,7 +62,7 @@ void warn_about_renamed(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
     if (name == source.name) continue;
     add_warning(
         warnings, source.location,
-        "a second joint named " + in_quotes(source.name) + "; it is called " + in_quotes(name));
+        "a second joint named " + in_quotes(source.name) + "; it is renamed to " + in_quotes(name));
   }
 }
 
@@ -90,7 +90,7 @@ class MotionReader {
     header_ = read_header();
     motion_.frame_time_s = header_.frame_time_s;
     if (row_.empty() && !options_.allow_no_frames)
-      throw FormatError(header_.location, "no joint has a channel, so there is no motion",
+      throw FormatError(header_.location, "no joint has a channel",
                         "export the joints with their channels");
     reserve();
     while (!row_.empty() && !scanner_.at_end()) {
@@ -144,7 +144,7 @@ Header MotionReader::read_header() {
   header.location = scanner_.location(frames_token);
   const double frames = read_field("Frames", "", "'Frames:' and a number");
   if (frames < 0 || frames != std::floor(frames))
-    throw FormatError(header.location, "the number of frames must be a whole number from 0 on",
+    throw FormatError(header.location, "the number of frames must be a whole number, 0 or more",
                       "count the rows below");
   const int most = max_frames_of(static_cast<int>(columns_.size()), options_);
   if (frames > most)
@@ -157,11 +157,11 @@ Header MotionReader::read_header() {
   header.frame_time_s = read_field("Frame", "Time", "'Frame Time:' and a number");
   if (header.frame_time_s < kShortestFrame_s || header.frame_time_s > kLongestFrame_s)
     scanner_.fail(time_token, "the frame time must be from 0.0001 to 1 s",
-                  "write the seconds from a frame to the next");
+                  "write the seconds between two frames");
   return header;
 }
 
-// The declared count is only believed as far as the bytes that are left can hold it.
+// Reserves no more frames than the remaining bytes can hold, whatever count is declared.
 void MotionReader::reserve() {
   const auto possible = scanner_.bytes_left() / (2 * std::max<std::size_t>(1, row_.size())) + 1;
   const auto frames = std::min(static_cast<std::size_t>(header_.declared_frames), possible);
@@ -212,7 +212,7 @@ Vec3 MotionReader::position(std::size_t joint) const {
   if (result.cwiseAbs().maxCoeff() > kMaxLength_m)
     scanner_.fail(scanner_.here(),
                   "a position in the row of frame " + std::to_string(motion_.num_frames() + 1) +
-                      " is too large to be a place",
+                      " is out of range",
                   "check the number and the unit of the file");
   return result;
 }
@@ -233,22 +233,22 @@ void MotionReader::append_offset(std::size_t joint, const Vec3& offset) {
 void MotionReader::check_frame_count() {
   const int rows = motion_.num_frames();
   if (rows == 0 && !options_.allow_no_frames)
-    throw FormatError(header_.location, "there is no frame, so there is no motion",
-                      "export the frames, or ask for the skeleton alone");
+    throw FormatError(header_.location, "the file has no frames",
+                      "export the frames, or read only the skeleton");
   if (rows != header_.declared_frames)
     add_warning(warnings_, header_.location,
                 "the file declares " + std::to_string(header_.declared_frames) +
-                    " frames and has " + std::to_string(rows) + "; those that it has are read");
+                    " frames and has " + std::to_string(rows) + "; all that exist are read");
 }
 
-// The rotation that brings an axis up (to y).
+// The rotation from the given up axis to y up.
 Quat rotation_to_y(Axis up) {
   if (up == Axis::y) return Quat::Identity();
   return Quat(Eigen::AngleAxisd(up == Axis::z ? -0.5 * kPi : 0.5 * kPi,
                                 up == Axis::z ? Vec3::UnitX() : Vec3::UnitZ()));
 }
 
-// The same movement described in other world axes: every frame of the skeleton turns along.
+// The same movement in other world axes: rotates every frame of the skeleton.
 void change_basis(Motion& motion, const Quat& C) {
   auto joints = motion.skeleton.joints();
   for (auto& joint : joints) {

@@ -28,7 +28,7 @@ void append_lengths(std::string& text, const Vec3& lengths_m) {
   for (const double length : lengths_m) append_number(text, length * kUnitsPerMetre);
 }
 
-// Names a reader takes as one word.
+// Names without spaces, which readers would split.
 std::vector<std::string> writable_names(const Skeleton& skeleton) {
   std::vector<std::string> names;
   for (const auto& joint : skeleton.joints()) {

@@ -11,13 +11,13 @@
 
 namespace sparse_mocap {
 
-// What a reader accepts at the most, and what a file does not say about itself.
+// Limits of the readers, and properties that the files do not state.
 struct ReadOptions {
   std::size_t max_bytes = std::size_t{2} << 30;
   int max_joints = 1024;
   int max_depth = 256;
   int max_frames = 3'000'000;
-  std::size_t max_rotations = std::size_t{1} << 27;  // frames * joints: what takes the memory
+  std::size_t max_rotations = std::size_t{1} << 27;  // frames * joints, which limits memory
   double amc_rate_hz = 120.0;                        // AMC files do not state their rate
   double bvh_unit_m = 0.01;      // BVH files do not state their unit; the convention is cm
   Axis bvh_up = Axis::y;         // the file's up axis; the motion read always has y up
@@ -27,7 +27,7 @@ struct ReadOptions {
   void validate() const;
 };
 
-// Something a reader accepted although it looks odd: the first of its kind in the file.
+// Something suspicious that a reader accepted: the first of its kind in the file.
 struct ReadWarning {
   FileLocation location;
   std::string text;

@@ -45,7 +45,7 @@ double size_m(const JointTransforms& pose) {
   return box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
 }
 
-// A warning's text without what is quoted and without digits.
+// A warning's text without quotations and digits.
 std::string kind_of(std::string_view text) {
   std::string kind;
   bool is_quoted = false;

@@ -10,9 +10,9 @@
 
 namespace sparse_mocap {
 
-// What the readers of motion files share.
+// Shared by the readers of motion files.
 
-// A length or position further away than this is a broken file, not a place.
+// A length or position beyond this means that the file is broken.
 inline constexpr double kMaxLength_m = 1e5;
 
 // q followed, in its own frame, by a turn about one axis: q * (axis, angle).
@@ -41,11 +41,11 @@ enum class NameCase { counts, ignored };
 std::vector<std::string> unique_names(std::vector<std::string> names,
                                       NameCase name_case = NameCase::counts);
 
-// Warns when a figure in this pose is far from human size, and says which unit would make it so.
+// Warns when a figure in this pose is far from human size, with the unit that would fit.
 void warn_about_size(const JointTransforms& pose, double unit_m, const FileLocation& location,
                      std::vector<ReadWarning>& warnings);
 
-// The most frames of num_joints joints that the options let a motion have.
+// The largest number of frames that the options allow for num_joints joints.
 int max_frames_of(int num_joints, const ReadOptions& options);
 
 }  // namespace sparse_mocap

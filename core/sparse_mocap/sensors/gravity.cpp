@@ -60,7 +60,7 @@ StandingGravity standing_gravity(const SensorRecording& standing) {
   StandingGravity gravity;
   gravity.magnitude = mean.norm();
   if (stretch.unrest > kLargestUnrest * gravity.magnitude)
-    refuse("it is not still while the wearer stands: its readings vary by ",
+    refuse("it is not still while the performer stands: its readings vary by ",
            stretch.unrest / gravity.magnitude * kGravity_mps2, " m/s^2; stand still for 2 s");
   gravity.is_in_g = std::abs(gravity.magnitude - 1.0) <= kLargestGravityError;
   const double expected = gravity.is_in_g ? 1.0 : kGravity_mps2;

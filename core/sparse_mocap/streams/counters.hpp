@@ -8,7 +8,7 @@
 
 namespace sparse_mocap::streams {
 
-// What a parser counts.
+// The counters of a parser.
 enum class Count {
   samples,
   frames,  // whole frames, lines or datagrams that were understood
@@ -21,9 +21,9 @@ enum class Count {
   missing_samples,  // by the device's counter
   repeated,         // the same counter or time again
   out_of_order,     // a counter that went back
-  device_resets,    // the device told that it started anew, or its clock did
-  device_errors,    // the device told of an error
-  unconfigured,     // data before it is known how they are laid out
+  device_resets,    // the device reported a restart, or its clock restarted
+  device_errors,    // the device reported an error
+  unconfigured,     // data before their layout is known
   incomplete,       // parts of a sample whose other parts never came
   implausible,      // not finite, or beyond what any such sensor reads
   too_many_sensors,

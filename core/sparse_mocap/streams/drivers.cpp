@@ -58,7 +58,7 @@ const Driver& find(std::string_view name) {
 
 Options checked(const Driver& driver, const OptionMap& given) {
   Options options(driver.name, driver.options(), given);
-  driver.make_parser(options);  // looks at every value
+  driver.make_parser(options);  // checks every value
   return options;
 }
 

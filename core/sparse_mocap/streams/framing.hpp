@@ -10,7 +10,7 @@
 
 namespace sparse_mocap::streams {
 
-// What stands at the head of the bytes that are not yet used.
+// What the unread bytes start with.
 struct Head {
   enum class Kind { need_more, frame, skip };
 
@@ -22,14 +22,14 @@ struct Head {
   static Head frame(std::size_t size) { return {Kind::frame, size}; }
 };
 
-// Cuts a stream of bytes into frames. Where no frame begins it moves on by one byte, so that a
+// Splits a stream of bytes into frames. Where no frame starts it advances by one byte, so that a
 // damaged frame never hides a good one behind it.
 class FrameScanner {
  public:
-  // capacity: no frame is longer, so that inspect never asks for more than this.
+  // capacity: the length of the longest frame.
   explicit FrameScanner(std::size_t capacity) : capacity_(capacity) {}
 
-  // inspect says what stands at the head and may look at nothing else; accept gets whole frames.
+  // inspect classifies the unread bytes from their start; accept receives complete frames.
   void feed(ByteView bytes, Counters& counters, const std::function<Head(ByteView)>& inspect,
             const std::function<void(ByteView)>& accept);
   void reset();
@@ -43,7 +43,7 @@ class FrameScanner {
   bool is_skipping_ = false;
 };
 
-// Cuts a stream of bytes into lines that end in '\n'. Longer ones are dropped and counted.
+// Splits a stream of bytes into lines that end in '\n'. Longer ones are dropped and counted.
 class LineSplitter {
  public:
   static constexpr std::size_t kLongestLine = 4096;

@@ -30,7 +30,7 @@ Options::Options(std::string_view driver, std::span<const OptionSpec> specs, con
     if (values_.find(name) == values_.end())
       throw ConfigError(
           "driver " + driver_ + " has no option " + in_quotes(name) +
-          (names.empty() ? "; it has none at all"
+          (names.empty() ? "; it has no options"
                          : "; the nearest is '" + std::string(nearest_name(name, names)) + "'"));
     values_[name] = value;
   }

@@ -18,8 +18,8 @@ struct OptionSpec {
 
 using OptionMap = std::map<std::string, std::string, std::less<>>;
 
-// A driver's settings, as texts until a driver asks for them; each question throws ConfigError
-// naming the option, its value and what it may be.
+// A driver's options as texts; the getters convert them and throw ConfigError
+// naming the option, its value and the allowed values.
 class Options {
  public:
   // Throws ConfigError for a name that the driver does not have, naming the nearest.

@@ -30,7 +30,7 @@ inline Quat rotation_of(const Sample& sample) {
   return quaternion_of(sample.orientation).normalized();
 }
 
-// Puts back the gravity that a device took out, by the sample's own orientation.
+// Adds the gravity that a device removed, using the sample's own orientation.
 inline void restore_gravity(Sample& sample, const Vec3& linear_acceleration) {
   sample.specific_force =
       linear_acceleration + rotation_of(sample).conjugate() * (kGravity_mps2 * kUp);

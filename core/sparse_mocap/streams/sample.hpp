@@ -10,19 +10,18 @@ namespace sparse_mocap::streams {
 
 inline constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
-// The unit g of accelerometers (ISO 80000-3), exact; kGravity_mps2 is what the place's gravity is
-// taken for.
+// The unit g of accelerometers (ISO 80000-3), exact; kGravity_mps2 is the assumed local gravity.
 inline constexpr double kStandardGravity_mps2 = 9.80665;
 
-// What is remarkable about a sample; bits.
+// Flags of a sample; bits.
 enum SampleFlag : unsigned {
-  kClipped = 1,          // a value is at the end of the sensor's range
+  kClipped = 1,          // a value is at the limit of the sensor's range
   kAfterGap = 2,         // samples are missing before this one
-  kAfterReset = 4,       // the device's counter or clock began anew
-  kGravityRestored = 8,  // sent without gravity, which was put back by the sensor's own orientation
+  kAfterReset = 4,       // the device's counter or clock restarted
+  kGravityRestored = 8,  // sent without gravity, which was added using the sensor's own orientation
 };
 
-// What one sensor read at one instant, in SI units and in the sensor's own axes: flat on a table
+// One sensor's measurement at one instant, in SI units and the sensor's own axes: flat on a table
 // with z up, specific_force is (0, 0, +9.81). NaN where the device did not send it.
 struct Sample {
   int sensor = 0;             // index into StreamParser::sensor_names()

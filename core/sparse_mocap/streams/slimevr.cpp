@@ -50,7 +50,7 @@ class Encoder : public StreamEncoder {
     Bytes packet = header(kHandshake, 0);
     for (int i = 0; i < 6; ++i) append_big(packet, std::int32_t{0});
     append_big(packet, std::int32_t{19});  // version of the protocol
-    packet.push_back(0);                   // no name of a firmware
+    packet.push_back(0);                   // no firmware name
     packet.insert(packet.end(), {0x02, 0, 0, 0, 0, 0x01});
     return {packet};
   }
@@ -92,8 +92,8 @@ class Encoder : public StreamEncoder {
 Parser::Parser(const Options&) : scanner_(kLongestDatagram + 2) {}
 
 void Parser::parse(ByteView bytes) {
-  // Amid a datagram any two bytes may look like a length: a known type and a number that is not
-  // beyond what a device ever counts to must follow, too.
+  // Inside a datagram any two bytes may look like a length, so a known type and a plausible packet
+  // number must follow.
   const auto inspect = [](ByteView head) {
     if (head.size() < 2) return Head::more();
     const std::size_t length = read_big<std::uint16_t>(head.data());
@@ -140,16 +140,16 @@ void Parser::parse_datagram(ByteView datagram, std::string_view sender) {
   }
   auto& tracker = found->second;
   const auto body = datagram.subspan(kHeader);
-  if (type == kHandshake) return take_handshake(body, tracker);
-  if (!take_number(number, tracker)) return;
+  if (type == kHandshake) return handle_handshake(body, tracker);
+  if (!handle_number(number, tracker)) return;
   if (type == kPing) reply(Bytes(datagram.begin(), datagram.end()));
   if (is_bundle)
-    take_bundle(body, type == kCompactBundle, tracker);
+    handle_bundle(body, type == kCompactBundle, tracker);
   else
-    take_packet(type, body, tracker);
+    handle_packet(type, body, tracker);
 }
 
-bool Parser::take_number(std::int64_t number, Tracker& tracker) {
+bool Parser::handle_number(std::int64_t number, Tracker& tracker) {
   const auto last = tracker.last_number;
   if (last && number <= *last) {
     ++count(number == *last ? Count::repeated : Count::out_of_order);
@@ -164,7 +164,7 @@ bool Parser::take_number(std::int64_t number, Tracker& tracker) {
 }
 
 // [7 x i32 board, sensors, versions][u8 length + name of the firmware][6 bytes MAC].
-void Parser::take_handshake(ByteView body, Tracker& tracker) {
+void Parser::handle_handshake(ByteView body, Tracker& tracker) {
   constexpr std::size_t kNumbers = 28, kMac = 6;
   ++count(Count::frames);
   if (body.size() > kNumbers && body.size() >= kNumbers + 1 + body[kNumbers] + kMac) {
@@ -186,7 +186,7 @@ void Parser::take_handshake(ByteView body, Tracker& tracker) {
 }
 
 // [u16 length][i32 type][body] each; compact: [u8 length][u8 type][body].
-void Parser::take_bundle(ByteView body, bool is_compact, Tracker& tracker) {
+void Parser::handle_bundle(ByteView body, bool is_compact, Tracker& tracker) {
   const std::size_t length_size = is_compact ? 1 : 2, type_size = is_compact ? 1 : 4;
   while (!body.empty()) {
     if (body.size() < length_size) break;
@@ -194,14 +194,14 @@ void Parser::take_bundle(ByteView body, bool is_compact, Tracker& tracker) {
     body = body.subspan(length_size);
     if (length < type_size || length > body.size()) break;
     const auto type = is_compact ? body[0] : read_big<std::int32_t>(body.data());
-    take_packet(type, body.subspan(type_size, length - type_size), tracker);
+    handle_packet(type, body.subspan(type_size, length - type_size), tracker);
     body = body.subspan(length);
     if (body.empty()) return;
   }
   ++count(Count::malformed);
 }
 
-void Parser::take_packet(std::int32_t type, ByteView body, Tracker& tracker) {
+void Parser::handle_packet(std::int32_t type, ByteView body, Tracker& tracker) {
   const std::size_t needed = type == kAcceleration              ? 13
                              : type == kRotation                ? 19
                              : type == kRotationAndAcceleration ? 15
@@ -216,19 +216,19 @@ void Parser::take_packet(std::int32_t type, ByteView body, Tracker& tracker) {
   }
   ++count(Count::frames);
   if (type == kAcceleration) {
-    take_acceleration(body[12], read_floats(body.data()), tracker);
+    handle_acceleration(body[12], read_floats(body.data()), tracker);
   } else if (type == kRotation && body[1] == kNormalRotation) {
     const Vec3 v = read_floats(&body[2]);
-    take_rotation(body[0], Quat(read_big<float>(&body[14]), v[0], v[1], v[2]), tracker);
+    handle_rotation(body[0], Quat(read_big<float>(&body[14]), v[0], v[1], v[2]), tracker);
   } else if (type == kRotationAndAcceleration) {
     std::array<double, 7> v;
     for (std::size_t i = 0; i < v.size(); ++i) v[i] = read_big<std::int16_t>(&body[1 + 2 * i]);
-    take_rotation(body[0], Quat(v[3] / 32768, v[0] / 32768, v[1] / 32768, v[2] / 32768), tracker);
-    take_acceleration(body[0], Vec3(v[4], v[5], v[6]) / 128.0, tracker);
+    handle_rotation(body[0], Quat(v[3] / 32768, v[0] / 32768, v[1] / 32768, v[2] / 32768), tracker);
+    handle_acceleration(body[0], Vec3(v[4], v[5], v[6]) / 128.0, tracker);
   }
 }
 
-void Parser::take_rotation(int sensor, const Quat& rotation, Tracker& tracker) {
+void Parser::handle_rotation(int sensor, const Quat& rotation, Tracker& tracker) {
   if (std::abs(rotation.norm() - 1.0) < 0.1) {
     tracker.orientations[sensor] = orientation_from_z_up(rotation.normalized());
   } else {
@@ -237,7 +237,7 @@ void Parser::take_rotation(int sensor, const Quat& rotation, Tracker& tracker) {
   }
 }
 
-void Parser::take_acceleration(int sensor, const Vec3& linear_acceleration, Tracker& tracker) {
+void Parser::handle_acceleration(int sensor, const Vec3& linear_acceleration, Tracker& tracker) {
   const auto orientation = tracker.orientations.find(sensor);
   if (orientation == tracker.orientations.end()) {
     ++count(Count::incomplete);

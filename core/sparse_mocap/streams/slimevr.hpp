@@ -11,11 +11,11 @@
 
 namespace sparse_mocap::streams::slimevr {
 
-// SlimeVR trackers, heard as their server: big-endian datagrams [i32 type][i64 number][body] (and
+// SlimeVR trackers, acting as their server: big-endian datagrams [i32 type][i64 number][body] (and
 // bundles of such without numbers). Trackers send their rotation and the acceleration without
-// gravity; each acceleration makes a sample, gravity put back by the newest rotation.
+// gravity; each acceleration makes a sample, with gravity added using the newest rotation.
 //
-// feed() takes recorded datagrams, each as [u16 length][datagram], from one sender.
+// feed() accepts recorded datagrams, each as [u16 length][datagram], from one sender.
 class Parser : public StreamParser {
  public:
   explicit Parser(const Options& options);
@@ -31,7 +31,7 @@ class Parser : public StreamParser {
   struct Tracker {
     std::string name;
     std::optional<std::int64_t> last_number;
-    std::map<int, int> sensors;  // from the tracker's number to ours
+    std::map<int, int> sensors;  // from the tracker's number to the parser's index
     std::map<int, Eigen::Vector4d> orientations;
     unsigned next_flags = 0;
   };
@@ -39,12 +39,12 @@ class Parser : public StreamParser {
   void parse(ByteView bytes) override;
   void parse_datagram(ByteView datagram, std::string_view sender) override;
   void restart() override;
-  bool take_number(std::int64_t number, Tracker& tracker);
-  void take_handshake(ByteView body, Tracker& tracker);
-  void take_bundle(ByteView body, bool is_compact, Tracker& tracker);
-  void take_packet(std::int32_t type, ByteView body, Tracker& tracker);
-  void take_rotation(int sensor, const Quat& rotation, Tracker& tracker);
-  void take_acceleration(int sensor, const Vec3& linear_acceleration, Tracker& tracker);
+  bool handle_number(std::int64_t number, Tracker& tracker);
+  void handle_handshake(ByteView body, Tracker& tracker);
+  void handle_bundle(ByteView body, bool is_compact, Tracker& tracker);
+  void handle_packet(std::int32_t type, ByteView body, Tracker& tracker);
+  void handle_rotation(int sensor, const Quat& rotation, Tracker& tracker);
+  void handle_acceleration(int sensor, const Vec3& linear_acceleration, Tracker& tracker);
 
   FrameScanner scanner_;
   std::map<std::string, Tracker, std::less<>> trackers_;  // by sender

@@ -27,7 +27,7 @@ bool is_plausible(const Sample& sample) {
          is_plausible(sample.angular_velocity, kFastestTurn_radps);
 }
 
-// Devices' texts go to terminals and user interfaces.
+// Devices' texts are shown in terminals and user interfaces.
 std::string printable(std::string_view text) {
   std::string clean;
   for (const char c : text.substr(0, kLongestText)) clean += (c >= ' ' && c <= '~') ? c : '?';
@@ -56,7 +56,7 @@ void StreamParser::reset() {
   restart();
 }
 
-std::vector<Bytes> StreamParser::take_replies() { return std::exchange(replies_, {}); }
+std::vector<Bytes> StreamParser::pop_replies() { return std::exchange(replies_, {}); }
 
 int StreamParser::add_sensor(const std::string& name) {
   if (sensor_names_.size() == kMostSensors) {
@@ -81,7 +81,7 @@ void StreamParser::emit(const Sample& sample) {
   if (sample.has_orientation()) samples_->back().orientation.normalize();
 }
 
-void StreamParser::tell(std::string_view message) { last_message_ = printable(message); }
+void StreamParser::set_message(std::string_view message) { last_message_ = printable(message); }
 
 void StreamParser::reply(Bytes bytes) {
   if (replies_.size() < kMostReplies) replies_.push_back(std::move(bytes));

@@ -17,8 +17,8 @@ using ByteView = std::span<const std::uint8_t>;
 
 // Turns a device's bytes into samples, without input or output of its own.
 //
-// However the bytes are cut into pieces, samples and counters are the same. Memory is bounded,
-// whatever comes. What cannot be used is dropped and counted, never guessed.
+// Samples and counters do not depend on how the bytes are split into pieces. Memory is bounded for
+// any input. What cannot be used is dropped and counted, never guessed.
 class StreamParser {
  public:
   StreamParser() = default;
@@ -26,30 +26,30 @@ class StreamParser {
   StreamParser& operator=(const StreamParser&) = delete;
   virtual ~StreamParser() = default;
 
-  // Appends the samples that these bytes complete.
+  // Appends the samples completed by these bytes.
   void feed(ByteView bytes, std::vector<Sample>& samples);
 
-  // The same for one datagram; sender tells devices apart that share a socket ("10.0.0.7:6969").
+  // The same for one datagram; sender identifies devices that share a socket ("10.0.0.7:6969").
   void feed_datagram(ByteView datagram, std::string_view sender, std::vector<Sample>& samples);
 
-  // The connection was opened anew: forgets what was begun and the device's clocks and
-  // configuration. Sensors keep their indices, counters go on.
+  // The connection was opened again: forgets the unfinished message and the device's clocks and
+  // configuration. Sensors keep their indices, counters continue.
   void reset();
 
-  // After reset(): the wire was idle for so long that what comes first begins a message.
+  // After reset(): the line was idle long enough that the next byte starts a message.
   virtual void begin_message() {}
 
-  // Bytes are missing before what comes next: forgets the message that was begun, and keeps what is
-  // known of the device.
+  // Bytes are missing before the next ones: forgets the unfinished message, but keeps the device's
+  // configuration.
   virtual void interrupt() = 0;
 
   const Counters& counters() const { return counters_; }
-  // In the order in which the sensors were met. A name may change when the device tells its own.
+  // In the order in which the sensors appeared. A name may change when the device sends its own.
   const std::vector<std::string>& sensor_names() const { return sensor_names_; }
-  // What the device told last in words, such as an error; empty: nothing.
+  // The device's last text message, such as an error; empty: none.
   const std::string& last_message() const { return last_message_; }
-  // What the protocol wants answered; for datagrams, to the sender of the one just fed.
-  std::vector<Bytes> take_replies();
+  // Answers that the protocol requires; for datagrams, to the sender of the one just fed.
+  std::vector<Bytes> pop_replies();
 
  protected:
   static constexpr std::size_t kMostSensors = 64;
@@ -61,9 +61,9 @@ class StreamParser {
   // The index of a new sensor, -1 when there are too many (which is counted).
   int add_sensor(const std::string& name);
   void rename_sensor(int sensor, const std::string& name);
-  // Hands out a sample unless it is implausible.
+  // Outputs a sample unless it is implausible.
   void emit(const Sample& sample);
-  void tell(std::string_view message);
+  void set_message(std::string_view message);
   void reply(Bytes bytes);
   std::uint64_t& count(Count what) { return counters_[what]; }
   Counters& all_counts() { return counters_; }
@@ -76,7 +76,7 @@ class StreamParser {
   std::vector<Sample>* samples_ = nullptr;
 };
 
-// The other direction: what a device would send. For emulators and tests.
+// The opposite direction: what a device would send. For emulators and tests.
 class StreamEncoder {
  public:
   StreamEncoder() = default;
@@ -84,12 +84,12 @@ class StreamEncoder {
   StreamEncoder& operator=(const StreamEncoder&) = delete;
   virtual ~StreamEncoder() = default;
 
-  // What a device sends of its own accord when it starts.
+  // What a device sends when it starts.
   virtual std::vector<Bytes> hello() { return {}; }
-  // The samples of one instant, at most one a sensor, as packets (datagrams, or to be joined).
-  // Absent values are sent as zeros and the rotation that does nothing.
+  // The samples of one instant, at most one per sensor, as packets (datagrams, or to be joined).
+  // Absent values are sent as zeros, absent orientations as the identity.
   virtual std::vector<Bytes> encode(std::span<const Sample> samples) = 0;
-  // What the device answers to what a host sends it.
+  // The device's answer to what a host sends.
   virtual Bytes respond(ByteView) { return {}; }
 };
 

@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, kNumColumns> kNames{
     "time", "sensor", "counter", "ax", "ay", "az", "gx", "gy",  "gz",
     "mx",   "my",     "mz",      "qw", "qx", "qy", "qz", "skip"};
 constexpr double kWrap = 4294967296.0;
-constexpr double kLatest = 9e15;  // counts exactly in a double
+constexpr double kLatest = 9e15;  // exactly representable in a double
 constexpr std::size_t kLongestName = 64;
 
 std::optional<Column> column_named(std::string_view name) {
@@ -51,7 +51,7 @@ Vec3 vector_of(const ColumnValues& values, Column first) {
   return {values[at], values[at + 1], values[at + 2]};
 }
 
-// Whether every field is as its column demands; values of absent columns are NaN.
+// Whether every field is valid for its column; values of absent columns are NaN.
 bool read_fields(const std::vector<std::string_view>& fields, const std::vector<Column>& columns,
                  ColumnValues& values, std::string_view& name) {
   values.fill(kAbsent);
@@ -95,7 +95,7 @@ class Encoder : public StreamEncoder {
   std::vector<Bytes> hello() override {
     Bytes line;
     if (!is_header_sent_) {
-      append_text(line, "ready\r\n");  // sketches greet; no sample is then taken for half a line
+      append_text(line, "ready\r\n");  // like sketches at start-up; it is dropped as the first line
       return {line};
     }
     for (const auto column : profile_.columns) {
@@ -188,7 +188,7 @@ Profile::Profile(const Options& options)
   is_gravity_included = options.choice("gravity", {"included", "removed"}) == 0;
   if (!is_gravity_included && !columns.empty() &&
       !has(columns, {Column::qw, Column::qx, Column::qy, Column::qz}))
-    options.fail("gravity", "included, for without qw, qx, qy, qz it cannot be put back");
+    options.fail("gravity", "included, because gravity cannot be added without qw, qx, qy, qz");
 }
 
 Parser::Parser(const Options& options)
@@ -198,7 +198,7 @@ Parser::Parser(const Options& options)
       skips_first_line_(is_first_line_) {}
 
 void Parser::parse(ByteView bytes) {
-  lines_.feed(bytes, all_counts(), [&](ByteView line) { take(text_of(line)); });
+  lines_.feed(bytes, all_counts(), [&](ByteView line) { handle(text_of(line)); });
 }
 
 void Parser::interrupt() {
@@ -218,22 +218,22 @@ void Parser::restart() {
   }
 }
 
-void Parser::take(std::string_view line) {
+void Parser::handle(std::string_view line) {
   if (std::exchange(is_first_line_, false) && !columns_.empty() && !is_surely_whole(line)) {
     first_line_ = line;
     return;
   }
   if (line.empty()) return;
   if (columns_.empty() && line.starts_with(profile_.prefix) && is_printable(line))
-    return take_header(split_fields(line.substr(profile_.prefix.size()), profile_.separator));
+    return handle_header(split_fields(line.substr(profile_.prefix.size()), profile_.separator));
   ColumnValues values;
   std::string_view name;
   if (!read(line, values, name)) {
     ++count(Count::malformed);
     return;
   }
-  if (!first_line_.empty()) judge_first_line(line, values, name);
-  take_values(values, name);
+  if (!first_line_.empty()) check_first_line(line, values, name);
+  handle_values(values, name);
 }
 
 bool Parser::read(std::string_view line, ColumnValues& values, std::string_view& name) const {
@@ -243,8 +243,8 @@ bool Parser::read(std::string_view line, ColumnValues& values, std::string_view&
                      columns_, values, name);
 }
 
-// A prefix that no number holds stands nowhere else in a line of numbers; and of a first column
-// that means nothing nothing is missed.
+// A prefix that cannot be part of a number occurs only at the start of a line of numbers; and a
+// first column that is skipped may be incomplete.
 bool Parser::is_surely_whole(std::string_view line) const {
   const bool has_texts = std::ranges::any_of(
       columns_, [](Column c) { return c == Column::sensor || c == Column::skip; });
@@ -253,9 +253,10 @@ bool Parser::is_surely_whole(std::string_view line) const {
          profile_.prefix.find_first_not_of(" \t+-.,;eE0123456789") != std::string::npos;
 }
 
-// By the next line of the same sensor. A number without its first digits is too small by at least
-// 10^k, k being how many digits are left of it: more than itself, and never what a counter skips.
-void Parser::judge_first_line(std::string_view next_line, const ColumnValues& next,
+// Uses the next line of the same sensor. A number that lost its leading digits is too small by at
+// least 10^k, k being the number of remaining digits: more than its own value, and more than any
+// step of a counter.
+void Parser::check_first_line(std::string_view next_line, const ColumnValues& next,
                               std::string_view name) {
   ColumnValues first;
   std::string_view first_name;
@@ -270,25 +271,25 @@ void Parser::judge_first_line(std::string_view next_line, const ColumnValues& ne
   const bool counts_on = (column == Column::counter && step == 1.0) ||
                          (column == Column::time && step >= 0.0 && step <= value_of(first, column));
   if (is_line && counts_on && has_point(first_line_) == has_point(next_line))
-    take_values(first, first_name);
+    handle_values(first, first_name);
   first_line_.clear();
 }
 
-void Parser::take_values(const ColumnValues& values, std::string_view name) {
+void Parser::handle_values(const ColumnValues& values, std::string_view name) {
   ++count(Count::frames);
   auto* device = device_of(name);
   if (device == nullptr) return;
   Sample sample = sample_of(values, profile_);
   sample.sensor = device->sensor;
   const double counter = value_of(values, Column::counter), time = value_of(values, Column::time);
-  if (!std::isnan(counter) && !take_counter(counter, *device, sample)) return;
-  if (!std::isnan(time) && !take_time(time, *device, sample)) return;
+  if (!std::isnan(counter) && !handle_counter(counter, *device, sample)) return;
+  if (!std::isnan(time) && !handle_time(time, *device, sample)) return;
   sample.flags |= std::exchange(device->next_flags, 0u);
   emit(sample);
 }
 
-// Columns of names that mean nothing here are passed over; without ax, ay, az it is no header.
-void Parser::take_header(const std::vector<std::string_view>& fields) {
+// Columns with unknown names are skipped; without ax, ay, az the line is not a header.
+void Parser::handle_header(const std::vector<std::string_view>& fields) {
   std::vector<Column> columns;
   for (const auto& field : fields) columns.push_back(column_named(field).value_or(Column::skip));
   const bool has_orientation = has(columns, {Column::qw, Column::qx, Column::qy, Column::qz});
@@ -298,7 +299,7 @@ void Parser::take_header(const std::vector<std::string_view>& fields) {
     columns_ = columns;
 }
 
-bool Parser::take_time(double value, Device& device, Sample& sample) {
+bool Parser::handle_time(double value, Device& device, Sample& sample) {
   if (value < 0.0 || value > kLatest) {
     ++count(Count::implausible);
     return false;
@@ -325,12 +326,12 @@ bool Parser::take_time(double value, Device& device, Sample& sample) {
   return true;
 }
 
-bool Parser::take_counter(double value, Device& device, Sample& sample) {
+bool Parser::handle_counter(double value, Device& device, Sample& sample) {
   if (value < 0.0 || value > kLatest || value != std::floor(value)) {
     ++count(Count::malformed);
     return false;
   }
-  const auto step = device.counter.take(static_cast<std::uint64_t>(value));
+  const auto step = device.counter.unwrap(static_cast<std::uint64_t>(value));
   count(Count::missing_samples) += static_cast<std::uint64_t>(step.missing);
   if (step.missing > 0) device.next_flags |= kAfterGap;
   if (step.is_backwards) device.next_flags |= kAfterReset;
@@ -352,23 +353,23 @@ Parser::Device* Parser::device_of(std::string_view name) {
 
 std::vector<OptionSpec> Parser::options() {
   return {
-      {"name", "text", "what the sensor is called when no column says so"},
+      {"name", "text", "name of the sensor, when no column has it"},
       {"separator", "comma", "comma, tab, semicolon or space"},
       {"columns", "ax,ay,az,gx,gy,gz",
-       "'header' when the device sends a line that names them, or a list of time, sensor, counter, "
+       "'header' if the device sends a header line, or a list of time, sensor, counter, "
        "ax..az, gx..gz, mx..mz, qw..qz, skip"},
-      {"prefix", "", "what every line of data begins with"},
+      {"prefix", "", "start of every data line"},
       {"acceleration_unit", "m/s2", "m/s2, g, mg or raw"},
       {"counts_per_g", "16384", "for raw: 16384, 8192, 4096, 2048 at +-2, 4, 8, 16 g (MPU6050)"},
       {"acceleration_sign", "+", "'-' for a device that reads -1 g on the axis that points up"},
-      {"gravity", "included", "included, or removed where qw..qz are there to put it back"},
+      {"gravity", "included", "included, or removed (then qw..qz are needed to add it)"},
       {"angular_velocity_unit", "deg/s", "rad/s, deg/s or raw"},
       {"counts_per_degps", "131",
        "for raw: 131, 65.5, 32.8, 16.4 at +-250 to 2000 deg/s (MPU6050)"},
       {"time_unit", "us", "s, ms, us or ns; ms and us may wrap at 2^32"},
       {"skip_first_line", "true",
-       "true: the first line may be the end of one; it is taken only when it is sure to be whole"},
-      {"start_text", "", "what is sent to a device that waits for a character"},
+       "true: the first line may be incomplete; it is used only when it is certainly complete"},
+      {"start_text", "", "text to send to a device that waits for it before it starts"},
   };
 }
 
@@ -384,8 +385,8 @@ std::unique_ptr<StreamEncoder> Parser::make_encoder(const Options& options,
   const bool names_sensors =
       profile.columns.empty() || std::ranges::count(profile.columns, Column::sensor) == 1;
   if (sensors.size() != 1 && !names_sensors)
-    options.fail("columns", "a list with 'sensor' for an emulator of several sensors");
-  if (!profile.is_gravity_included) options.fail("gravity", "included for an emulator");
+    options.fail("columns", "a list with 'sensor' to emulate several sensors");
+  if (!profile.is_gravity_included) options.fail("gravity", "included for the emulator");
   return std::make_unique<Encoder>(std::move(profile), sensors);
 }
 

@@ -37,13 +37,13 @@ inline constexpr std::size_t kNumColumns = static_cast<std::size_t>(Column::skip
 // By column; NaN where a line has no such column.
 using ColumnValues = std::array<double, kNumColumns>;
 
-// How a device spells its lines and in which units; throws ConfigError for what cannot be.
+// The layout and units of a device's lines; throws ConfigError for invalid options.
 struct Profile {
   explicit Profile(const Options& options);
 
   char separator = ',';
   std::string prefix;
-  std::vector<Column> columns;  // empty: the device sends a line that names them
+  std::vector<Column> columns;  // empty: the device sends a header line
   double force_scale = 1.0;     // to m/s^2
   double turn_scale = 1.0;      // to rad/s
   double time_tick_s = 1.0;
@@ -55,9 +55,9 @@ struct Profile {
 // One sample a line of text, as Arduino and ESP32 sketches print them. A line that is not exactly
 // as the profile says is dropped: text at start-up, half lines, a repeated header, nan and ovf.
 //
-// The first line after the port was opened may lack its begin and still look like one. It is taken
-// when it is sure to be whole: the wire was idle before it (begin_message), it begins with a prefix
-// that nothing else can look like, or the sensor's next line counts on from it.
+// The first line after the port was opened may be incomplete and still look valid. It is used when
+// it is certainly complete: the line was idle before it (begin_message), it starts with a prefix
+// that cannot be part of a number, or the sensor's next line continues its counter or time.
 class Parser : public StreamParser {
  public:
   explicit Parser(const Options& options);
@@ -82,22 +82,22 @@ class Parser : public StreamParser {
 
   void parse(ByteView bytes) override;
   void restart() override;
-  void take(std::string_view line);
+  void handle(std::string_view line);
   bool read(std::string_view line, ColumnValues& values, std::string_view& name) const;
   bool is_surely_whole(std::string_view line) const;
-  void judge_first_line(std::string_view next_line, const ColumnValues& next,
+  void check_first_line(std::string_view next_line, const ColumnValues& next,
                         std::string_view name);
-  void take_values(const ColumnValues& values, std::string_view name);
-  void take_header(const std::vector<std::string_view>& fields);
-  bool take_time(double value, Device& device, Sample& sample);
-  bool take_counter(double value, Device& device, Sample& sample);
+  void handle_values(const ColumnValues& values, std::string_view name);
+  void handle_header(const std::vector<std::string_view>& fields);
+  bool handle_time(double value, Device& device, Sample& sample);
+  bool handle_counter(double value, Device& device, Sample& sample);
   Device* device_of(std::string_view name);
 
   Profile profile_;
   std::vector<Column> columns_;
   bool is_first_line_;
   bool skips_first_line_;
-  std::string first_line_;  // that may lack its begin; empty: none is kept
+  std::string first_line_;  // may be incomplete; empty: none
   LineSplitter lines_;
   std::map<std::string, Device, std::less<>> devices_;
 };

@@ -15,7 +15,7 @@ std::int64_t signed_step(std::uint64_t from, std::uint64_t to, int bits) {
 
 }  // namespace
 
-PacketCounter::Step PacketCounter::take(std::uint64_t raw) {
+PacketCounter::Step PacketCounter::unwrap(std::uint64_t raw) {
   Step step;
   const std::int64_t by = is_started_ ? signed_step(last_raw_, raw, bits_) : 1;
   step.is_repeated = by == 0;
@@ -32,7 +32,7 @@ PacketCounter::Step PacketCounter::take(std::uint64_t raw) {
   return step;
 }
 
-TickClock::Step TickClock::take(std::uint64_t raw) {
+TickClock::Step TickClock::unwrap(std::uint64_t raw) {
   // No clock of 64 bits counts this far.
   raw = std::min<std::uint64_t>(raw, std::numeric_limits<std::int64_t>::max() / 4);
   Step step;

@@ -5,19 +5,19 @@
 
 namespace sparse_mocap::streams {
 
-// A device's packet counter of a few bits, as a count that goes on.
+// Unwraps a device's packet counter of a few bits to an ever-growing count.
 class PacketCounter {
  public:
   struct Step {
     std::int64_t counter = 0;
     std::int64_t missing = 0;  // how many packets were lost before this one
     bool is_repeated = false;
-    bool is_backwards = false;  // the count began anew; the next step is from here
+    bool is_backwards = false;  // the counter restarted; the next step is from here
   };
 
   explicit PacketCounter(int bits) : bits_(bits) {}
 
-  Step take(std::uint64_t raw);
+  Step unwrap(std::uint64_t raw);
 
  private:
   int bits_;
@@ -26,18 +26,18 @@ class PacketCounter {
   std::int64_t counter_ = 0;
 };
 
-// A device's clock of a few bits, as a time that ascends.
+// Unwraps a device's clock of a few bits to an ascending time.
 class TickClock {
  public:
   struct Step {
     double time_s = 0.0;
     bool is_repeated = false;
-    bool is_restarted = false;  // it went back; the time goes on with the last step's length
+    bool is_restarted = false;  // it went back; the last step is repeated instead
   };
 
   TickClock(int bits, double tick_s) : bits_(bits), tick_s_(tick_s) {}
 
-  Step take(std::uint64_t raw);
+  Step unwrap(std::uint64_t raw);
 
  private:
   int bits_;

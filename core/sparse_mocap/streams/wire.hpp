@@ -12,7 +12,7 @@
 
 namespace sparse_mocap::streams {
 
-// Numbers as they stand in frames. Callers have checked that there are enough bytes.
+// Reads and writes binary numbers. Callers have checked that there are enough bytes.
 template <std::endian order, typename T>
 T read_number(const std::uint8_t* at) {
   std::array<std::uint8_t, sizeof(T)> bytes;

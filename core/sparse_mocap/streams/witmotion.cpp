@@ -108,7 +108,7 @@ class Encoder : public StreamEncoder {
     return data;
   }
 
-  // Since 2000, on a clock that the device shows as a date.
+  // Time since 2000, which the device sends as a date.
   static Bytes time(double time_s) {
     using namespace std::chrono;
     const auto at = milliseconds(std::llround(std::max(time_s, 0.0) * 1000.0));
@@ -176,7 +176,7 @@ void Parser::parse(ByteView bytes) {
     ++count(Count::bad_checksums);
     return Head::skip();
   };
-  scanner_.feed(bytes, all_counts(), inspect, [&](ByteView frame) { take(frame); });
+  scanner_.feed(bytes, all_counts(), inspect, [&](ByteView frame) { handle(frame); });
 }
 
 void Parser::interrupt() {
@@ -193,7 +193,7 @@ void Parser::restart() {
   next_flags_ = kAfterReset;
 }
 
-void Parser::take(ByteView frame) {
+void Parser::handle(ByteView frame) {
   const int type = frame[1];
   const auto* data = &frame[2];
   if (type < kLowestType || type >= kHighestType) {
@@ -208,7 +208,7 @@ void Parser::take(ByteView frame) {
     is_repeated_ = is_finished_ = false;
   }
   type_ = type;
-  if (type == kTime) take_time(data);
+  if (type == kTime) handle_time(data);
   if (type == kForce) sample_.specific_force = read_vector(data, range_mps2_);
   if (type == kTurn) sample_.angular_velocity = read_vector(data, kGyroscopeRange_radps);
   if ((type == kForce || type == kTurn) && is_at_end(data)) sample_.flags |= kClipped;
@@ -220,18 +220,18 @@ void Parser::take(ByteView frame) {
     sample_.orientation = orientation_from_z_up(is_scalar_first_ ? Quat(q[0], q[1], q[2], q[3])
                                                                  : Quat(q[3], q[0], q[1], q[2]));
   }
-  // As soon as the frame is here with which cycles end.
+  // As soon as the last frame of a cycle has arrived.
   if (type >= std::ranges::max(last_types_) && last_types_[1] != 0 && !is_finished_) finish();
 }
 
-void Parser::take_time(const std::uint8_t* data) {
+void Parser::handle_time(const std::uint8_t* data) {
   using namespace std::chrono;
   const year_month_day date(year(2000 + data[0]), month(data[1]), day(data[2]));
-  if (!date.ok()) return;  // a clock that was never set; the time of arrival has to do
+  if (!date.ok()) return;  // the clock was never set; arrival times are used instead
   const auto since = sys_days(date) - sys_days(year(2000) / 1 / 1);
   const std::int64_t ms = ((since.count() * 24LL + data[3]) * 60 + data[4]) * 60'000 +
                           data[5] * 1000 + read_little<std::uint16_t>(data + 6);
-  const auto step = clock_.take(static_cast<std::uint64_t>(ms));
+  const auto step = clock_.unwrap(static_cast<std::uint64_t>(ms));
   sample_.time_s = step.time_s;
   is_repeated_ = step.is_repeated;
   if (step.is_restarted) {
@@ -260,7 +260,7 @@ BleParser::BleParser(const Options& options)
 void BleParser::parse(ByteView bytes) {
   scanner_.feed(
       bytes, all_counts(), [&](ByteView head) { return inspect(head); },
-      [&](ByteView frame) { take(frame); });
+      [&](ByteView frame) { handle(frame); });
 }
 
 void BleParser::interrupt() {
@@ -288,7 +288,7 @@ Head BleParser::inspect(ByteView head) {
   return Head::frame(kBleSize);
 }
 
-void BleParser::take(ByteView frame) {
+void BleParser::handle(ByteView frame) {
   ++count(Count::frames);
   if (frame[1] != kBleData) return;
   Sample sample;
@@ -302,7 +302,7 @@ void BleParser::take(ByteView frame) {
 }
 
 std::vector<OptionSpec> Parser::options() {
-  return {{"name", "witmotion", "what the sensor is called"},
+  return {{"name", "witmotion", "name of the sensor"},
           {"rate_hz", "100", "samples a second: 10, 20, 50, 100 or 200 (10 at 9600 baud)"},
           {"range_g", "16", "full scale of the accelerometer in g"},
           {"quaternion_order", "wxyz", "order of the quaternion's numbers: wxyz or xyzw"}};
@@ -320,7 +320,7 @@ std::unique_ptr<StreamEncoder> Parser::make_encoder(const Options& options,
 }
 
 std::vector<OptionSpec> BleParser::options() {
-  return {{"name", "witmotion", "what the sensor is called"},
+  return {{"name", "witmotion", "name of the sensor"},
           {"rate_hz", "100", "samples a second: 10, 20, 50, 100 or 200"},
           {"range_g", "16", "full scale of the accelerometer in g"}};
 }

@@ -28,8 +28,8 @@ class Parser : public StreamParser {
  private:
   void parse(ByteView bytes) override;
   void restart() override;
-  void take(ByteView frame);
-  void take_time(const std::uint8_t* data);
+  void handle(ByteView frame);
+  void handle_time(const std::uint8_t* data);
   void finish();
 
   FrameScanner scanner_{11};
@@ -41,7 +41,7 @@ class Parser : public StreamParser {
   bool is_repeated_ = false;
   unsigned next_flags_ = 0;
   int type_ = 0;                     // the newest frame's of this cycle; 0: none
-  std::array<int, 2> last_types_{};  // with which the two cycles before this one ended
+  std::array<int, 2> last_types_{};  // last frame types of the two previous cycles
   bool is_finished_ = false;
 };
 
@@ -62,7 +62,7 @@ class BleParser : public StreamParser {
   void parse(ByteView bytes) override;
   void restart() override;
   Head inspect(ByteView head);
-  void take(ByteView frame);
+  void handle(ByteView frame);
 
   FrameScanner scanner_{22};
   double range_mps2_;

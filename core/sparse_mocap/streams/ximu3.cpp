@@ -21,7 +21,7 @@ constexpr std::uint8_t kBinary = 0x80, kEnd = '\n', kEscape = 0xDB, kEscapedEnd 
 constexpr std::uint64_t kLatest_us = std::uint64_t{1} << 53;    // 285 years
 constexpr double kLargest_g = 400.0, kFastest_degps = 10000.0;  // twice what any x-IMU3 measures
 
-// How many values a message of this type has; 0: none that are of use, -1: no such type.
+// Number of values in a message of this type; 0: not used here, -1: no such type.
 int num_values(char id) {
   switch (id) {
     case 'I':
@@ -48,7 +48,7 @@ int num_values(char id) {
   }
 }
 
-// Nothing when an escape is none.
+// Nothing when an escape sequence is invalid.
 std::optional<Bytes> unescaped(ByteView message) {
   Bytes plain;
   for (std::size_t i = 0; i < message.size(); ++i) {
@@ -151,7 +151,7 @@ Parser::Parser(const Options& options) : name_(options.text("name")) {
 }
 
 void Parser::parse(ByteView bytes) {
-  lines_.feed(bytes, all_counts(), [&](ByteView line) { take(line, '\0'); });
+  lines_.feed(bytes, all_counts(), [&](ByteView line) { handle(line, '\0'); });
 }
 
 void Parser::restart() {
@@ -164,11 +164,11 @@ void Parser::restart() {
   }
 }
 
-void Parser::take(ByteView message, char channel) {
+void Parser::handle(ByteView message, char channel) {
   if (message.empty()) return;
   if (message[0] == '^') {
     if (channel == '\0' && message.size() > 2 && message[1] > ' ' && message[1] <= '~')
-      return take(message.subspan(2), static_cast<char>(message[1]));
+      return handle(message.subspan(2), static_cast<char>(message[1]));
     ++count(Count::malformed);
     return;
   }
@@ -176,21 +176,21 @@ void Parser::take(ByteView message, char channel) {
   if (device.name.empty())
     device.name = channel == '\0' ? name_ : name_ + "_" + std::string(1, channel);
   if (message[0] >= kBinary)
-    take_binary(message, device);
+    handle_binary(message, device);
   else if (message[0] == '{')
-    take_reply(text_of(message), device);
+    handle_reply(text_of(message), device);
   else
-    take_text(message, device);
+    handle_text(message, device);
 }
 
-void Parser::take_text(ByteView message, Device& device) {
+void Parser::handle_text(ByteView message, Device& device) {
   const auto fields = split_fields(text_of(message), ',');
   const char id = fields[0].size() == 1 ? fields[0][0] : '\0';
   if (id == 'N' || id == 'F') {
     count(Count::device_errors) += id == 'F' ? 1 : 0;
     ++count(Count::frames);
     const auto text = text_of(message);
-    return tell(text.substr(std::min(text.find(',', 2), text.size() - 1) + 1));
+    return set_message(text.substr(std::min(text.find(',', 2), text.size() - 1) + 1));
   }
   const int num = num_values(id);
   if (num < 0) {
@@ -211,16 +211,16 @@ void Parser::take_text(ByteView message, Device& device) {
     ++count(Count::malformed);
     return;
   }
-  take_values(id, time_us, values, device);
+  handle_values(id, time_us, values, device);
 }
 
-void Parser::take_binary(ByteView message, Device& device) {
+void Parser::handle_binary(ByteView message, Device& device) {
   const char id = static_cast<char>(message[0] - kBinary);
   const int num = num_values(id);
   if (id == 'N' || id == 'F' || num == 0) {
     ++count(Count::frames);
     count(Count::device_errors) += id == 'F' ? 1 : 0;
-    if (num != 0 && message.size() > 9) tell(text_of(message.subspan(9)));
+    if (num != 0 && message.size() > 9) set_message(text_of(message.subspan(9)));
     return;
   }
   if (num < 0) {
@@ -235,11 +235,11 @@ void Parser::take_binary(ByteView message, Device& device) {
   }
   std::vector<double> values;
   for (std::size_t at = 9; at < size; at += 4) values.push_back(read_little<float>(&(*plain)[at]));
-  take_values(id, read_little<std::uint64_t>(&(*plain)[1]), values, device);
+  handle_values(id, read_little<std::uint64_t>(&(*plain)[1]), values, device);
 }
 
 // {"ping":{"interface":"USB","name":"Right Foot","sn":"64F619FB"}} names the device.
-void Parser::take_reply(std::string_view text, Device& device) {
+void Parser::handle_reply(std::string_view text, Device& device) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (json.is_discarded()) {
     ++count(Count::malformed);
@@ -255,18 +255,18 @@ void Parser::take_reply(std::string_view text, Device& device) {
   if (device.sensor >= 0) rename_sensor(device.sensor, device.name);
 }
 
-void Parser::take_values(char id, std::uint64_t time_us, std::span<const double> values,
-                         Device& device) {
+void Parser::handle_values(char id, std::uint64_t time_us, std::span<const double> values,
+                           Device& device) {
   if (!std::ranges::all_of(values, [](double v) { return std::isfinite(v); })) {
     ++count(Count::implausible);
     return;
   }
   ++count(Count::frames);
-  if (id == 'I') return take_inertial(time_us, values, device);
-  if (!values.empty()) take_orientation(time_us, orientation_of(id, values), device);
+  if (id == 'I') return handle_inertial(time_us, values, device);
+  if (!values.empty()) handle_orientation(time_us, orientation_of(id, values), device);
 }
 
-void Parser::take_inertial(std::uint64_t time_us, std::span<const double> v, Device& device) {
+void Parser::handle_inertial(std::uint64_t time_us, std::span<const double> v, Device& device) {
   if (device.pending) {
     device.is_orientation_due = false;
     finish(device);
@@ -276,7 +276,7 @@ void Parser::take_inertial(std::uint64_t time_us, std::span<const double> v, Dev
     ++count(Count::implausible);
     return;
   }
-  const auto step = device.clock.take(time_us);
+  const auto step = device.clock.unwrap(time_us);
   if (step.is_repeated) {
     ++count(Count::repeated);
     return;
@@ -300,7 +300,8 @@ void Parser::take_inertial(std::uint64_t time_us, std::span<const double> v, Dev
   if (is_here || !device.is_orientation_due) finish(device);
 }
 
-void Parser::take_orientation(std::uint64_t time_us, const Eigen::Vector4d& value, Device& device) {
+void Parser::handle_orientation(std::uint64_t time_us, const Eigen::Vector4d& value,
+                                Device& device) {
   device.orientation_us = time_us;
   device.orientation = value;
   if (time_us != device.inertial_us || device.sensor < 0) return;
@@ -316,9 +317,9 @@ void Parser::finish(Device& device) {
 }
 
 std::vector<OptionSpec> Parser::options() {
-  return {{"name", "ximu3", "what the sensor is called until it tells its name"},
+  return {{"name", "ximu3", "name of the sensor until it sends its own"},
           {"format", "ascii",
-           "what the device is told to send, and an emulator sends: ascii or "
+           "format requested from the device and sent by the emulator: ascii or "
            "binary (both are always understood)"}};
 }
 

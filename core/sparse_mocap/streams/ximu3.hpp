@@ -35,19 +35,20 @@ class Parser : public StreamParser {
     std::uint64_t inertial_us = 0;
     std::uint64_t orientation_us = 0;
     Eigen::Vector4d orientation = Eigen::Vector4d::Constant(kAbsent);
-    bool is_orientation_due = true;  // it came behind the sample before
+    bool is_orientation_due = true;  // it followed the previous sample
     unsigned next_flags = 0;
   };
 
   void parse(ByteView bytes) override;
   void restart() override;
-  void take(ByteView message, char channel);
-  void take_text(ByteView message, Device& device);
-  void take_binary(ByteView message, Device& device);
-  void take_reply(std::string_view text, Device& device);
-  void take_values(char id, std::uint64_t time_us, std::span<const double> values, Device& device);
-  void take_inertial(std::uint64_t time_us, std::span<const double> values, Device& device);
-  void take_orientation(std::uint64_t time_us, const Eigen::Vector4d& value, Device& device);
+  void handle(ByteView message, char channel);
+  void handle_text(ByteView message, Device& device);
+  void handle_binary(ByteView message, Device& device);
+  void handle_reply(std::string_view text, Device& device);
+  void handle_values(char id, std::uint64_t time_us, std::span<const double> values,
+                     Device& device);
+  void handle_inertial(std::uint64_t time_us, std::span<const double> values, Device& device);
+  void handle_orientation(std::uint64_t time_us, const Eigen::Vector4d& value, Device& device);
   void finish(Device& device);
 
   LineSplitter lines_;

@@ -30,17 +30,17 @@ double read_value(const std::uint8_t* at, Precision precision) {
   return read_big<double>(at);
 }
 
-// Takes values one after the other.
+// Reads values one after the other.
 class Reader {
  public:
   explicit Reader(ByteView data) : rest_(data) {}
 
   Eigen::VectorXd values(int num, Precision precision) {
     Eigen::VectorXd values(num);
-    for (double& value : values) value = read_value(take(kWidths[precision]), precision);
+    for (double& value : values) value = read_value(read_bytes(kWidths[precision]), precision);
     return values;
   }
-  const std::uint8_t* take(std::size_t size) {
+  const std::uint8_t* read_bytes(std::size_t size) {
     const auto* at = rest_.data();
     rest_ = rest_.subspan(size);
     return at;
@@ -77,7 +77,7 @@ void finish(Measured& measured, World world) {
       sample, rotation_of(sample).conjugate() * (R_project_device * measured.free_acceleration));
 }
 
-// How a type of MTData2 is spelt, without its bits for world and precision; 0 values: not numbers.
+// The layout of an MTData2 type, without its bits for world and precision; 0 values: not numbers.
 struct Field {
   unsigned type;
   int num_values;
@@ -92,7 +92,7 @@ constexpr std::array kMotionFields{
     Field{kAcceleration, 3},  Field{kFreeAcceleration, 3}, Field{kRateOfTurn, 3},
     Field{kMagneticField, 3},
 };
-// Known, and of no use here: temperature, times, pressure, increments, position, velocity, GNSS,
+// Known but not used: temperature, times, pressure, increments, position, velocity, GNSS,
 // raw data, status.
 constexpr std::array<unsigned, 26> kUnusedTypes{
     0x0810, 0x1010, 0x1030, 0x1040, 0x1050, 0x1070, 0x1080, 0x3010, 0x4010,
@@ -100,7 +100,7 @@ constexpr std::array<unsigned, 26> kUnusedTypes{
     0xA010, 0xA020, 0xC010, 0xD010, 0xE010, 0xE030, 0xE040, 0x4050};
 constexpr std::uint32_t kClipFlags = 0x3F00;  // of the status word: accelerometer and gyroscope
 
-bool take_numbers(Measured& out, unsigned type, const Eigen::VectorXd& v, World world) {
+bool handle_numbers(Measured& out, unsigned type, const Eigen::VectorXd& v, World world) {
   auto& sample = out.sample;
   switch (type) {
     case kQuaternion:
@@ -127,15 +127,15 @@ bool take_numbers(Measured& out, unsigned type, const Eigen::VectorXd& v, World 
   return v.allFinite();
 }
 
-// Whether the field is as its type demands. Types that are not used are passed over.
-bool take_field(Measured& out, unsigned id, ByteView data, World world) {
+// Whether the field is valid for its type. Types that are not used are skipped.
+bool handle_field(Measured& out, unsigned id, ByteView data, World world) {
   const unsigned type = id & 0xFFF0u;
   for (const auto& field : kMotionFields) {
     if (field.type != type) continue;
     const auto precision = static_cast<Precision>(id & 3u);
     if (data.size() != kWidths[precision] * static_cast<std::size_t>(field.num_values))
       return false;
-    return take_numbers(out, type, Reader(data).values(field.num_values, precision), world);
+    return handle_numbers(out, type, Reader(data).values(field.num_values, precision), world);
   }
   if (type == kPacketCounter) {
     if (data.size() != 2) return false;
@@ -177,7 +177,7 @@ std::size_t raw_length(unsigned mode) {
   return (mode & kModeRaw ? 20u : 0u) + (mode & kModeRawGps ? 44u : 0u);
 }
 
-void take_calibrated(Sample& sample, Reader& reader, const Layout& layout) {
+void handle_calibrated(Sample& sample, Reader& reader, const Layout& layout) {
   const auto precision = precision_of(layout.settings);
   if (!(layout.settings & kSettingsNoForce)) sample.specific_force = reader.values(3, precision);
   if (!(layout.settings & kSettingsNoTurn)) sample.angular_velocity = reader.values(3, precision);
@@ -195,7 +195,7 @@ std::optional<Measured> read_data2(ByteView data) {
     const std::size_t size = data[2];
     if (data.size() < 3 + size) return std::nullopt;
     if ((id & 0xF800u) == 0x2000u || (id & 0xFFF0u) == kFreeAcceleration) world = world_of(id);
-    if (!take_field(out, id, data.subspan(3, size), world_of(id))) return std::nullopt;
+    if (!handle_field(out, id, data.subspan(3, size), world_of(id))) return std::nullopt;
     data = data.subspan(3 + size);
   }
   finish(out, world);
@@ -225,9 +225,9 @@ std::optional<Measured> read_data(ByteView block, const Layout& layout) {
   Measured out;
   Reader reader(block);
   const auto precision = precision_of(layout.settings);
-  reader.take(raw_length(layout.mode));
+  reader.read_bytes(raw_length(layout.mode));
   if (layout.mode & kModeTemperature) reader.values(1, precision);
-  if (layout.mode & kModeCalibrated) take_calibrated(out.sample, reader, layout);
+  if (layout.mode & kModeCalibrated) handle_calibrated(out.sample, reader, layout);
   if (layout.mode & kModeOrientation) {
     const auto v = reader.values(num_orientation_values(layout.settings), precision);
     const Quat q =

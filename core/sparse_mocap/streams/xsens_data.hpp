@@ -7,7 +7,7 @@
 
 namespace sparse_mocap::streams::xsens {
 
-// What one sensor's part of a measurement message holds.
+// One sensor's part of a measurement message.
 struct Measured {
   Sample sample;
   std::optional<std::uint16_t> counter;
@@ -16,12 +16,12 @@ struct Measured {
   std::uint64_t num_unknown = 0;                     // fields of unknown type, skipped
 };
 
-// How the data of an MTData message are laid out (OutputMode and OutputSettings of MT0101P).
+// The layout of an MTData message (OutputMode and OutputSettings of MT0101P).
 struct Layout {
   unsigned mode = 0;
   unsigned settings = 0;
 
-  std::size_t length() const;  // in bytes, with the sample counter if settings ask for one
+  std::size_t length() const;  // in bytes, with the sample counter if settings include one
 };
 
 inline constexpr unsigned kModeCalibrated = 0x0002;

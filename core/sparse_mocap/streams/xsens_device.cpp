@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Both ends' other half: what a host sends to start an MT, and what an MT would send.
+// The sending side: what a host sends to start an MT, and what an MT would send.
 #include <cmath>
 #include <memory>
 
@@ -59,11 +59,11 @@ class Encoder : public StreamEncoder {
         tick_s_(options.number("tick_us", 0.1, 1e6) * 1e-6) {
     if (!options.is_empty("output_mode"))
       throw ConfigError(
-          "driver xsens_mt emulates no other output_mode than calibrated data and "
+          "the emulator of driver xsens_mt sends only calibrated data and "
           "quaternion; leave output_mode and output_settings empty");
   }
 
-  // A device that sends MTData says how they are laid out before the first.
+  // A device that sends MTData describes its layout before the first message.
   std::vector<Bytes> hello() override {
     if (is_data2_) return {seal(kMasterBus, kWakeUp)};
     return {seal(kMasterBus, kWakeUp), seal(kMasterBus, kConfiguration, configuration())};
@@ -183,12 +183,13 @@ class Encoder : public StreamEncoder {
 std::vector<OptionSpec> Parser::options() {
   return {
       {"output", "mtdata2",
-       "what the device is told to send: mtdata2, or mtdata (MTx, Xbus Master)"},
+       "format requested from the device: mtdata2, or mtdata (MTx, Xbus Master)"},
       {"rate_hz", "100", "samples a second"},
-      {"num_sensors", "1", "MTs on an Xbus Master that are told what to send"},
+      {"num_sensors", "1", "number of MTs on the Xbus Master to configure"},
       {"tick_us", "100", "length of SampleTimeFine's ticks in microseconds: 100, or 1 for DOT"},
-      {"output_mode", "", "layout of MTData when the device cannot be asked, as 0x0006"},
-      {"output_settings", "", "layout of MTData when the device cannot be asked, as 0x00000001"},
+      {"output_mode", "", "layout of MTData if the device does not report it, such as 0x0006"},
+      {"output_settings", "",
+       "layout of MTData if the device does not report it, such as 0x00000001"},
   };
 }
 

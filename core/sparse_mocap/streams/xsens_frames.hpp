@@ -38,7 +38,7 @@ struct Message {
   ByteView data;
 };
 
-// What stands at the head of the bytes; counts bad checksums and impossible lengths.
+// Classifies the start of the bytes; counts bad checksums and impossible lengths.
 Head inspect(ByteView bytes, Counters& counters);
 
 // The message of a frame that inspect found.

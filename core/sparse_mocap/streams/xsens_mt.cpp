@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPeriodTick_s = 1.0 / 115200.0;
 constexpr std::size_t kConfigurationHead = 98, kConfigurationDevice = 20, kMostDevices = 32;
-constexpr std::uint64_t kAskAfter = 100;  // data that cannot be read
+constexpr std::uint64_t kRequestAfter = 100;  // unreadable messages
 
 std::string hexadecimal(std::uint32_t value) {
   std::array<char, 9> text{};
@@ -39,13 +39,14 @@ std::string error_text(ByteView data) {
 Parser::Parser(const Options& options)
     : tick_s_(options.number("tick_us", 0.1, 1e6) * 1e-6),
       period_s_(0.0),
-      told_period_s_(1.0 / options.number("rate_hz", 1.0, 2000.0)) {
+      configured_period_s_(1.0 / options.number("rate_hz", 1.0, 2000.0)) {
   if (options.is_empty("output_mode") != options.is_empty("output_settings"))
     options.fail(options.is_empty("output_mode") ? "output_mode" : "output_settings",
-                 "given, as the other of output_mode and output_settings is");
+                 "set, because output_mode and output_settings belong together");
   if (!options.is_empty("output_mode"))
-    told_layout_ = Layout{static_cast<unsigned>(options.integer("output_mode", 1, 0xFFFF)),
-                          static_cast<unsigned>(options.integer("output_settings", 0, 0x7FFFFFFF))};
+    configured_layout_ =
+        Layout{static_cast<unsigned>(options.integer("output_mode", 1, 0xFFFF)),
+               static_cast<unsigned>(options.integer("output_settings", 0, 0x7FFFFFFF))};
   options.choice("output", {"mtdata2", "mtdata"});
   configure_by_options();
 }
@@ -54,15 +55,15 @@ void Parser::configure_by_options() {
   blocks_.clear();
   period_s_ = 0.0;
   bus_counter_.reset();
-  if (!told_layout_) return;
-  blocks_ = {{*told_layout_, told_layout_->length()}};
-  period_s_ = told_period_s_;
+  if (!configured_layout_) return;
+  blocks_ = {{*configured_layout_, configured_layout_->length()}};
+  period_s_ = configured_period_s_;
 }
 
 void Parser::parse(ByteView bytes) {
   scanner_.feed(
       bytes, all_counts(), [&](ByteView head) { return inspect(head, all_counts()); },
-      [&](ByteView frame) { take(open(frame)); });
+      [&](ByteView frame) { handle(open(frame)); });
 }
 
 void Parser::restart() {
@@ -75,33 +76,33 @@ void Parser::restart() {
   configure_by_options();
 }
 
-void Parser::take(const Message& message) {
+void Parser::handle(const Message& message) {
   ++count(Count::frames);
   switch (message.id) {
     case kData2:
-      return take_data2(message);
+      return handle_data2(message);
     case kData:
-      return take_data(message.data);
+      return handle_data(message.data);
     case kDeviceId:
-      return take_device_id(message);
+      return handle_device_id(message);
     case kConfiguration:
-      return take_configuration(message.data);
+      return handle_configuration(message.data);
     case kWakeUp:
       ++count(Count::device_resets);
-      tell("the device started anew");
+      set_message("the device restarted");
       reply(seal(kMasterBus, kWakeUpAck));
       for (auto& [address, device] : devices_) device.next_flags |= kAfterReset;
       return;
     case kError:
       ++count(Count::device_errors);
-      return tell(error_text(message.data));
+      return set_message(error_text(message.data));
     default:
       // Answers to commands have odd numbers.
       if (message.id % 2 == 0) ++count(Count::unknown_types);
   }
 }
 
-void Parser::take_device_id(const Message& message) {
+void Parser::handle_device_id(const Message& message) {
   if (message.data.size() < 4) {
     ++count(Count::malformed);
     return;
@@ -111,7 +112,7 @@ void Parser::take_device_id(const Message& message) {
   if (known != devices_.end()) rename_sensor(known->second.sensor, names_[message.bus]);
 }
 
-void Parser::take_configuration(ByteView data) {
+void Parser::handle_configuration(ByteView data) {
   const std::size_t num =
       data.size() < kConfigurationHead ? 0 : read_big<std::uint16_t>(&data[kConfigurationHead - 2]);
   if (num == 0 || num > kMostDevices ||
@@ -124,8 +125,8 @@ void Parser::take_configuration(ByteView data) {
   for (std::size_t i = 0; i < num; ++i) {
     const auto device = data.subspan(kConfigurationHead + i * kConfigurationDevice);
     const auto id = read_big<std::uint32_t>(device.data());
-    if (!ids.emplace(id, 0).second || !knows_block(device)) {
-      tell("the configuration of device " + hexadecimal(id) + " is not one that can be read");
+    if (!ids.emplace(id, 0).second || !add_block(device)) {
+      set_message("the configuration of device " + hexadecimal(id) + " is not supported");
       ++count(Count::malformed);
       blocks_.clear();
       return;
@@ -140,9 +141,10 @@ void Parser::take_configuration(ByteView data) {
   bus_counter_ = is_bus ? std::optional<PacketCounter>(16) : std::nullopt;
 }
 
-// Adds the block that a device of the configuration sends. Its length tells whether it ends in a
-// counter of its own: an Xbus Master puts one before all blocks instead.
-bool Parser::knows_block(ByteView device) {
+// Adds the block that a device of the configuration sends; false when its layout is not supported.
+// Its length shows whether it ends in a counter: an Xbus Master sends one before all blocks
+// instead.
+bool Parser::add_block(ByteView device) {
   Layout layout{read_big<std::uint16_t>(&device[6]), read_big<std::uint32_t>(&device[8])};
   const std::size_t length = read_big<std::uint16_t>(&device[4]);
   if (layout.length() != length) layout.settings &= ~kSettingsCounter;
@@ -162,42 +164,42 @@ Parser::Device* Parser::device_at(int address) {
               .first->second;
 }
 
-void Parser::take_data2(const Message& message) {
+void Parser::handle_data2(const Message& message) {
   const auto measured = read_data2(message.data);
   if (!measured) {
     ++count(Count::malformed);
     return;
   }
   count(Count::unknown_types) += measured->num_unknown;
-  if (auto* device = device_at(message.bus)) take_measured(*device, *measured);
+  if (auto* device = device_at(message.bus)) handle_measured(*device, *measured);
 }
 
-void Parser::take_data(ByteView data) {
+void Parser::handle_data(ByteView data) {
   if (blocks_.empty()) {
-    if (count(Count::unconfigured)++ % kAskAfter == 0) ask_for_configuration();
+    if (count(Count::unconfigured)++ % kRequestAfter == 0) request_configuration();
     return;
   }
-  if (bus_counter_) return take_bus_data(data);
+  if (bus_counter_) return handle_bus_data(data);
   const auto measured = read_data(data, blocks_[0].layout);
   if (!measured) {
     ++count(Count::malformed);
-    return tell("the data are not as long as the device's configuration says");
+    return set_message("the length of the data does not match the device's configuration");
   }
-  if (auto* device = device_at(kMasterBus)) take_measured(*device, *measured);
+  if (auto* device = device_at(kMasterBus)) handle_measured(*device, *measured);
 }
 
-// A device answers that only while it does not measure.
-void Parser::ask_for_configuration() {
+// A device answers this only while it is not measuring.
+void Parser::request_configuration() {
   for (const auto id : {kGoToConfig, kReqConfiguration, kGoToMeasurement})
     reply(seal(kMasterBus, id));
 }
 
-void Parser::take_bus_data(ByteView data) {
+void Parser::handle_bus_data(ByteView data) {
   std::size_t length = 2;
   for (const auto& block : blocks_) length += block.length;
   if (data.size() != length) {
     ++count(Count::malformed);
-    return tell("the data are not as long as the devices' configuration says");
+    return set_message("the length of the data does not match the devices' configuration");
   }
   const auto counter = read_big<std::uint16_t>(data.data());
   data = data.subspan(2);
@@ -206,15 +208,15 @@ void Parser::take_bus_data(ByteView data) {
     auto measured = read_data(data.first(block.length), block.layout);
     data = data.subspan(block.length);
     measured->counter = counter;
-    if (auto* device = device_at(address++)) take_measured(*device, *measured);
+    if (auto* device = device_at(address++)) handle_measured(*device, *measured);
   }
 }
 
-void Parser::take_measured(Device& device, const Measured& measured) {
+void Parser::handle_measured(Device& device, const Measured& measured) {
   Sample sample = measured.sample;
   sample.sensor = device.sensor;
   if (measured.counter) {
-    const auto step = device.counter.take(*measured.counter);
+    const auto step = device.counter.unwrap(*measured.counter);
     count(Count::missing_samples) += static_cast<std::uint64_t>(step.missing);
     if (step.missing > 0) device.next_flags |= kAfterGap;
     if (step.is_backwards) device.next_flags |= kAfterReset;
@@ -225,12 +227,12 @@ void Parser::take_measured(Device& device, const Measured& measured) {
     sample.counter = step.counter;
     if (period_s_ > 0.0) sample.time_s = static_cast<double>(step.counter) * period_s_;
   }
-  // Packets of GNSS data alone tell times of their own, which go back and forth.
+  // Packets with only GNSS data have separate times, which jump back and forth.
   if (!sample.has_specific_force() && !sample.has_orientation() &&
       !sample.angular_velocity.allFinite())
     return;
   if (measured.time_fine) {
-    const auto step = device.clock.take(*measured.time_fine);
+    const auto step = device.clock.unwrap(*measured.time_fine);
     sample.time_s = step.time_s;
     if (step.is_restarted) device.next_flags |= kAfterReset;
     if (step.is_restarted) ++count(Count::device_resets);

@@ -13,9 +13,8 @@
 
 namespace sparse_mocap::streams::xsens {
 
-// MTi, MTx, MTw: MTData2, or MTData of one MT or of several on an Xbus Master. How MTData are laid
-// out is learned from the device's Configuration message (start_commands asks for it), or told by
-// the options.
+// MTi, MTx, MTw: MTData2, or MTData of one MT or of several on an Xbus Master. The layout of MTData
+// comes from the device's Configuration message (requested by start_commands) or from the options.
 class Parser : public StreamParser {
  public:
   explicit Parser(const Options& options);
@@ -41,27 +40,27 @@ class Parser : public StreamParser {
 
   void parse(ByteView bytes) override;
   void restart() override;
-  void take(const Message& message);
-  void take_device_id(const Message& message);
-  void take_configuration(ByteView data);
-  bool knows_block(ByteView device);
-  void take_data2(const Message& message);
-  void take_data(ByteView data);
-  void ask_for_configuration();
-  void take_bus_data(ByteView data);
-  void take_measured(Device& device, const Measured& measured);
+  void handle(const Message& message);
+  void handle_device_id(const Message& message);
+  void handle_configuration(ByteView data);
+  bool add_block(ByteView device);
+  void handle_data2(const Message& message);
+  void handle_data(ByteView data);
+  void request_configuration();
+  void handle_bus_data(ByteView data);
+  void handle_measured(Device& device, const Measured& measured);
   Device* device_at(int address);
   void configure_by_options();
 
   FrameScanner scanner_{kLongestFrame};
   std::map<int, Device> devices_;     // by bus address
-  std::map<int, std::string> names_;  // as the devices tell them
+  std::map<int, std::string> names_;  // sent by the devices, by bus address
   std::vector<Block> blocks_;         // of an MTData message; empty: unconfigured
   std::optional<PacketCounter> bus_counter_;
   double tick_s_;
   double period_s_;  // 0: unknown
-  double told_period_s_;
-  std::optional<Layout> told_layout_;
+  double configured_period_s_;
+  std::optional<Layout> configured_layout_;
 };
 
 }  // namespace sparse_mocap::streams::xsens

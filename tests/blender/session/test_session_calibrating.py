@@ -47,7 +47,7 @@ def runtime(tmp_path):
 def session(performance, tmp_path):
     with emulated(sparse_mocap.read_take(performance[0])) as port:
         chosen = sensors.Port(port, DRIVER, options=OPTIONS, sites=", ".join(SITES))
-        live.begin(sensors.connecting(chosen, tmp_path / "takes"))
+        live.begin(sensors.new_session(chosen, tmp_path / "takes"))
         session = live.current()
         until(lambda: session.state.error or len(session.state.sensors) == len(SITES))
         yield session

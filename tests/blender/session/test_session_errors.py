@@ -12,7 +12,7 @@ from blender_addon.session.errors import InputError, one_line
     [
         (ValueError("a.bvh:3:\n  no numbers"), "a.bvh:3: no numbers"),
         (FileNotFoundError(2, "No such file or directory", "x.csv"), "x.csv: No such file or"),
-        (MemoryError(), "not enough memory"),
+        (MemoryError(), "Not enough memory"),
         (TypeError("odd\nthing"), "Unexpected TypeError: odd thing"),
     ],
 )

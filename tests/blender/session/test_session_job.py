@@ -66,7 +66,7 @@ def test_one_job_at_a_time():
     first = Job("First", _until_stopped)
     first.start()
     for begin in (Job("Second", len).start, Job("Third", len).run):
-        with pytest.raises(InputError, match="First is still at work"):
+        with pytest.raises(InputError, match="First is still running"):
             begin()
     assert jobs.current() is first
     jobs.cancel_current()

@@ -21,7 +21,7 @@ from blender_addon.session import live, sensors
 from blender_addon.session.database import open_database
 from blender_addon.session.errors import InputError
 from blender_addon.session.live_poses import MOST_BEHIND, LivePoses
-from blender_addon.session.surroundings import Surroundings
+from blender_addon.session.port_scanner import PortScanner
 
 SITES = ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
 
@@ -54,7 +54,7 @@ def port(made):
 
 def _connected(port, tmp_path, **how):
     chosen = sensors.Port(port, DRIVER, options=OPTIONS, sites=", ".join(SITES), **how)
-    live.begin(sensors.connecting(chosen, tmp_path / "takes"))
+    live.begin(sensors.new_session(chosen, tmp_path / "takes"))
     session = live.current()
     until(lambda: session.state.error or len(session.state.sensors) == len(SITES))
     assert session.state.error == ""
@@ -92,7 +92,7 @@ def test_a_recording_becomes_a_take_and_a_performance(made, port, tmp_path):
     session = _connected(port, tmp_path)
     session.record().result(5)
     until(lambda: session.state.recording and session.state.recording["samples"] > 600)
-    job = sensors.stopping_job(session, made[0], "", tmp_path / "takes", "default")
+    job = sensors.save_take_job(session, made[0], "", tmp_path / "takes", "default")
     kept = job.run()
     assert kept.reason == ""
     assert kept.warnings == ()
@@ -108,7 +108,7 @@ def test_a_take_is_kept_though_there_is_no_database(port, tmp_path):
     session = _connected(port, tmp_path)
     session.record().result(5)
     until(lambda: session.state.recording and session.state.recording["samples"] > 100)
-    kept = sensors.stopping_job(session, "", "", tmp_path / "takes", "default").run()
+    kept = sensors.save_take_job(session, "", "", tmp_path / "takes", "default").run()
     assert kept.performance is None
     assert "database" in kept.reason
     assert sparse_mocap.read_take(kept.path).sites == SITES
@@ -128,16 +128,16 @@ def test_a_recording_outlives_the_session_and_is_found(port, tmp_path):
     session.record().result(5)
     live.end()
     assert not session.is_running
-    around = Surroundings()
-    around.look()
-    around.wait(10)
-    [found] = around.view.captures
+    scanner = PortScanner()
+    scanner.scan()
+    scanner.wait(10)
+    [found] = scanner.result.captures
     assert found.recording_s is not None
     assert "recording" in found.text
-    live.begin(sensors.attaching(found.session))
+    live.begin(sensors.attach_session(found.session))
     again = live.current()
     until(lambda: again.state.recording is not None)
-    kept = sensors.stopping_job(again, "", "", tmp_path / "takes", "default").run()
+    kept = sensors.save_take_job(again, "", "", tmp_path / "takes", "default").run()
     assert sparse_mocap.read_take(kept.path).sites == SITES
     live.end()
     until(lambda: not is_alive(found.pid))
@@ -168,7 +168,7 @@ def test_a_killed_capture_is_told_in_a_line(port, tmp_path):
 
 
 def test_a_port_that_is_not_there_is_told_in_a_line(tmp_path):
-    live.begin(sensors.connecting(sensors.Port("/dev/not-there", DRIVER), tmp_path / "takes"))
+    live.begin(sensors.new_session(sensors.Port("/dev/not-there", DRIVER), tmp_path / "takes"))
     session = live.current()
     until(lambda: not session.is_running)
     assert "no such port" in session.state.error
@@ -187,7 +187,7 @@ def test_a_port_that_is_not_there_is_told_in_a_line(tmp_path):
 )
 def test_bad_choices_are_told_before_anything_starts(port, said, tmp_path):
     with pytest.raises(ValueError, match=said):
-        sensors.connecting(port, tmp_path / "takes")
+        sensors.new_session(port, tmp_path / "takes")
     assert not (tmp_path / "takes").exists()
 
 

@@ -135,7 +135,7 @@ TEST(TextScanner, SaysWhereAndWhatIsWrongWithANumber) {
   EXPECT_EQ(error_of("1\n2 1,5"),
             "walk.bvh:2:3: expected a number, got \"1,5\"; it has a decimal comma; write numbers "
             "with a point");
-  EXPECT_EQ(error_of("1e400"), "walk.bvh:1:1: \"1e400\" is too large a number; check the number");
+  EXPECT_EQ(error_of("1e400"), "walk.bvh:1:1: \"1e400\" is too large; check the number");
   EXPECT_EQ(error_of("nan"),
             "walk.bvh:1:1: expected a number, got \"nan\"; write a decimal number such as -1.5");
   EXPECT_EQ(

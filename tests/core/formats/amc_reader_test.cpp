@@ -176,7 +176,7 @@ TEST(ReadAmc, RecordsGapsBetweenFrameNumbers) {
 }
 
 TEST(ReadAmcRefuses, BadFrameNumbers) {
-  EXPECT_EQ(error_with("\n2\n", "\n1\n"), "8: :8:1: frame 1 is there twice; remove one of them");
+  EXPECT_EQ(error_with("\n2\n", "\n1\n"), "8: :8:1: frame 1 occurs twice; remove one of them");
   EXPECT_EQ(error_with("\n1\n", "\n3\n"),
             "8: :8:1: frame number 2 follows 3; put the frames in order");
   EXPECT_EQ(error_with("\n1\n", "\n1.5\n"),
@@ -190,13 +190,12 @@ TEST(ReadAmcRefuses, BadFrameNumbers) {
 }
 
 TEST(ReadAmcRefuses, BonesThatDoNotFitTheSkeleton) {
-  EXPECT_EQ(
-      error_with("shin 0\n", "shin 0\ntoe 1\n"),
-      "8: :8:1: bone \"toe\" is not in small.asf; the .asf belongs to another actor or system");
+  EXPECT_EQ(error_with("shin 0\n", "shin 0\ntoe 1\n"),
+            "8: :8:1: bone \"toe\" is not in small.asf; use the .asf of this actor");
   EXPECT_EQ(error_with("thigh 0 0 0\n", ""),
             "4: :4:1: bone \"thigh\" is missing in frame 1; the skeleton is small.asf");
   EXPECT_EQ(error_with("shin 0\n", "shin 0\nshin 0\n"),
-            "8: :8:1: bone \"shin\" is twice in frame 1; remove one of the lines");
+            "8: :8:1: bone \"shin\" occurs twice in frame 1; remove one of the lines");
   EXPECT_EQ(error_with("root 1 2 3 0 0 90\n", ""),
             "11: :11:1: bone \"root\" is missing in frame 2; the file may be cut off; 1 complete "
             "frames come before");
@@ -214,23 +213,24 @@ TEST(ReadAmcRefuses, WrongValues) {
             "6: :6:9: expected a number, got \"-1.#IND\"; write a decimal number such as -1.5");
   EXPECT_EQ(error_with("thigh 0 0 0", "thigh 0 x 0"),
             "6: :6:9: expected a number, got \"x\"; write a decimal number such as -1.5");
-  EXPECT_TRUE(contains(error_with("root 1 2 3", "root 1e30 2 3"), "too large to be a place"));
+  EXPECT_TRUE(contains(error_with("root 1 2 3", "root 1e30 2 3"), "out of range"));
 }
 
 TEST(ReadAmcRefuses, BrokenFiles) {
   EXPECT_EQ(error_in(""), "1: :1:1: the file is empty; export it again");
   EXPECT_EQ(error_in(":FULLY-SPECIFIED\n:DEGREES\n"),
-            "3: :3:1: there is no frame, so there is no motion; export the frames, or ask for the "
-            "skeleton alone");
+            "3: :3:1: the file has no frames; export the frames, or read only the "
+            "skeleton");
   EXPECT_EQ(
       error_with("\n2\n", "\n:DEGREES\n2\n"),
       "8: :8:1: a second header \":DEGREES\" after frame 1; remove it, or cut the file in two");
   EXPECT_EQ(error_with("thigh 90 90 0\nshin 90\n", "thigh 90 90 0\n"),
             "11: :11:1: bone \"shin\" is missing in frame 2; the file may be cut off; 1 complete "
             "frames come before");
-  EXPECT_EQ(error_in(kAmc, {.max_frames = 1}),
-            "8: :8:1: there are more frames than the limit of 1; raise the limit max_frames if it "
-            "is meant so");
+  EXPECT_EQ(
+      error_in(kAmc, {.max_frames = 1}),
+      "8: :8:1: there are more frames than the limit of 1; raise the limit max_frames if that "
+      "is intended");
   EXPECT_EQ(error_with(":DEGREES", ":SAMPLES-PER-SECOND 0"),
             "3: :3:21: the rate must be from 1 to 10000 samples a second; correct it");
 }

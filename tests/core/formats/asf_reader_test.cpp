@@ -139,11 +139,10 @@ TEST(ReadAsfRefuses, BadBones) {
       error_with("direction 0 -1 0", "direction 0 0 0"),
       "18: :18:10: the direction of bone \"thigh\" is zero; give it a direction, or the length 0");
   EXPECT_EQ(error_with("length 0.5", "length -0.5"),
-            "20: :20:12: the length of a bone is negative; turn its direction round");
-  EXPECT_EQ(
-      error_with("length 0.5", "length 1e30"),
-      "18: :18:10: bone \"thigh\" is too long to be a length; check its length and the unit of "
-      "the file");
+            "20: :20:12: the length of a bone is negative; reverse its direction instead");
+  EXPECT_EQ(error_with("length 0.5", "length 1e30"),
+            "18: :18:10: bone \"thigh\" is impossibly long; check its length and the unit of "
+            "the file");
   EXPECT_EQ(error_with("direction 0 -1 0", "direction 0 -1"),
             "20: :20:5: expected 3 numbers after direction, got \"length\"; write a decimal number "
             "such as -1.5");
@@ -151,7 +150,7 @@ TEST(ReadAsfRefuses, BadBones) {
             "21: :21:16: expected an order of rotations such as XYZ, got \"XXZ\"; name each of X, "
             "Y and Z once");
   EXPECT_EQ(error_with("dof rx ry rz", "dof rx ry rq"),
-            "22: :22:15: unknown channel \"rq\"; known are rx ry rz tx ty tz l");
+            "22: :22:15: unknown channel \"rq\"; use rx, ry, rz, tx, ty, tz or l");
   EXPECT_EQ(error_with("dof rx ry rz", "dof rx rx"),
             "22: :22:12: channel \"rx\" is listed twice; remove one of them");
   EXPECT_EQ(error_with("    name thigh\n", ""),
@@ -159,7 +158,7 @@ TEST(ReadAsfRefuses, BadBones) {
   EXPECT_EQ(error_with("name shin", "name THIGH"),
             "29: :29:10: a second bone is named \"THIGH\"; give it another name");
   EXPECT_EQ(error_with("name shin", "name root"),
-            "29: :29:10: a bone cannot be called root; give it another name");
+            "29: :29:10: a bone cannot be named root; give it another name");
   EXPECT_EQ(error_with("  end\n:hierarchy", ":hierarchy"),
             "42: :42:1: the bone that begins in line 36 has no end; the file may be cut off, or a "
             "line end is missing");
@@ -218,7 +217,7 @@ TEST(ReadAsfRefuses, BadSections) {
 
 TEST(ReadAsfRefuses, ARootThatIsNowhere) {
   EXPECT_EQ(error_with("position 0 0 0", "position 0 1e30 0"),
-            "13: :13:3: the position of the root is too large to be a place; check the number and "
+            "13: :13:3: the position of the root is out of range; check the number and "
             "the unit of the file");
 }
 
@@ -251,13 +250,13 @@ TEST(FindAsf, SaysWhatItLookedFor) {
   const TemporaryFolder folder;
   const auto error = [&] { return testing::error_of([&] { find_asf(folder / "02_01.amc"); }); };
   EXPECT_EQ(error(), "0: : there is no .asf in " + folder.path().string() +
-                         "; looked for 02_01.asf, 02.asf; an .amc needs the .asf of its actor "
-                         "beside it");
+                         "; looked for 02_01.asf, 02.asf; put the .asf of its actor into the same "
+                         "folder");
   folder.write("01.asf", "");
   folder.write("03.asf", "");
   EXPECT_EQ(error(), "0: : none of the 2 .asf in " + folder.path().string() +
-                         " belongs to it; looked for 02_01.asf, 02.asf; an .amc needs the .asf of "
-                         "its actor beside it");
+                         " matches its name; looked for 02_01.asf, 02.asf; put the .asf of its "
+                         "actor into the same folder");
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ TEST(ReadBvhDialects, WarningsOfAKindAreCounted) {
   EXPECT_TRUE(has_warning(file, "a second joint named"));
   EXPECT_EQ(file.warnings[2].count, 19);
   EXPECT_EQ(file.warnings[3].count, 1);
-  EXPECT_TRUE(file.warnings[3].message().ends_with("those that it has are read"));
+  EXPECT_TRUE(file.warnings[3].message().ends_with("all that exist are read"));
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ TEST(ReadBvhRefuses, BadChannels) {
   EXPECT_EQ(error_with(from, "Zrotation Zrotation Yrotation"),
             "4: :4:24: channel \"Zrotation\" is listed twice; remove one of them");
   EXPECT_EQ(error_with(from, "Zrotation Wrotation Yrotation"),
-            "4: :4:24: unknown channel \"Wrotation\"; known are Xposition to Zposition and "
+            "4: :4:24: unknown channel \"Wrotation\"; use Xposition to Zposition and "
             "Xrotation to Zrotation");
   EXPECT_EQ(error_with("  JOINT B", "CHANNELS 0\n  JOINT B"),
             "5: :5:1: a second CHANNELS of joint \"A\"; remove one of them");
@@ -149,15 +149,16 @@ TEST(ReadBvhRefuses, TreesBeyondTheLimits) {
   for (const int depth : {2000, 100'000}) {
     std::string text = "HIERARCHY ROOT r { OFFSET 0 0 0 CHANNELS 0\n";
     for (int i = 1; i < depth; ++i) text += "JOINT j { OFFSET 0 1 0 CHANNELS 0\n";
-    EXPECT_EQ(error_in(text),
-              "257: :257:1: joints are nested deeper than 256; raise the limit max_depth if it is "
-              "meant so");
+    EXPECT_EQ(
+        error_in(text),
+        "257: :257:1: joints are nested deeper than 256; raise the limit max_depth if that is "
+        "intended");
   }
   std::string siblings = "HIERARCHY ROOT r { OFFSET 0 0 0 CHANNELS 0\n";
   for (int i = 0; i < 5000; ++i) siblings += "JOINT j { OFFSET 0 1 0 CHANNELS 0 }\n";
   EXPECT_EQ(error_in(siblings),
-            "1025: :1025:1: there are more than 1024 joints; raise the limit max_joints if it is "
-            "meant so");
+            "1025: :1025:1: there are more than 1024 joints; raise the limit max_joints if that is "
+            "intended");
 }
 
 TEST(ReadBvhRefuses, MissingMotion) {
@@ -167,14 +168,14 @@ TEST(ReadBvhRefuses, MissingMotion) {
             "12: :12:1: expected 'Frames:' and a number, but the file ends; MOTION is followed by "
             "'Frames: 12' and 'Frame Time: 0.01'");
   EXPECT_EQ(error_in(kFile.substr(0, kFile.find("1 2 3 4"))),
-            "12: :12:1: there is no frame, so there is no motion; export the frames, or ask for "
-            "the skeleton alone");
+            "12: :12:1: the file has no frames; export the frames, or read only "
+            "the skeleton");
   EXPECT_EQ(error_in(replaced(kFile.substr(0, kFile.find("1 2 3 4")), "Frames: 2", "Frames: 0")),
-            "12: :12:1: there is no frame, so there is no motion; export the frames, or ask for "
-            "the skeleton alone");
+            "12: :12:1: the file has no frames; export the frames, or read only "
+            "the skeleton");
   EXPECT_EQ(error_in("HIERARCHY ROOT A { OFFSET 0 0 0 CHANNELS 0 }\nMOTION\nFrames: 3000000\n"
                      "Frame Time: 0.1"),
-            "3: :3:1: no joint has a channel, so there is no motion; export the joints with their "
+            "3: :3:1: no joint has a channel; export the joints with their "
             "channels");
 }
 
@@ -182,29 +183,29 @@ TEST(ReadBvhRefuses, BadFrameCounts) {
   for (const char* frames : {"-5", "2.5"})
     EXPECT_EQ(
         error_with("Frames: 2", "Frames: "s + frames),
-        "12: :12:1: the number of frames must be a whole number from 0 on; count the rows below");
+        "12: :12:1: the number of frames must be a whole number, 0 or more; count the rows below");
   EXPECT_EQ(error_with("Frames: 2", "Frames: 99999999999"),
             "12: :12:1: the file declares more frames than the limit of 3000000; raise the limit "
-            "max_frames if it is meant so");
+            "max_frames if that is intended");
   EXPECT_EQ(error_with("Frames: 2", "Frames: nan"),
             "12: :12:9: expected 'Frames:' and a number, got \"nan\"; write a decimal number such "
             "as -1.5");
   EXPECT_EQ(error_in(kFile, {.max_frames = 1}),
             "12: :12:1: the file declares more frames than the limit of 1; raise the limit "
-            "max_frames if it is meant so");
+            "max_frames if that is intended");
   EXPECT_EQ(error_in(replaced(kFile, "Frames: 2", "Frames: 1"), {.max_frames = 1}),
             "15: :15:15: there are more frames than the limit of 1; raise the limit max_frames if "
-            "it is meant so");
+            "that is intended");
   EXPECT_EQ(error_in(replaced(kFile, "Frames: 2", "Frames: 1"), {.max_rotations = 2}),
             "15: :15:15: there are more frames than the limit of 1; raise the limit max_frames if "
-            "it is meant so");
+            "that is intended");
 }
 
 TEST(ReadBvhRefuses, BadFrameTimes) {
   for (const char* time : {"0", "-0.1", "1e-9", "1000"})
     EXPECT_EQ(error_with("Frame Time: 0.1", "Frame Time: "s + time),
-              "13: :13:1: the frame time must be from 0.0001 to 1 s; write the seconds from a "
-              "frame to the next");
+              "13: :13:1: the frame time must be from 0.0001 to 1 s; write the seconds between "
+              "two frames");
   EXPECT_EQ(error_with("Frame Time: 0.1", "Frame Time: nan"),
             "13: :13:13: expected 'Frame Time:' and a number, got \"nan\"; write a decimal number "
             "such as -1.5");
@@ -234,11 +235,11 @@ TEST(ReadBvhRefuses, BadNumbers) {
       "14: :14:7: expected a number, got \"1,5\"; it has a decimal comma; write numbers with a "
       "point");
   EXPECT_EQ(error_with("1 2 3 4 5 6", "1 2 3 1e400 5 6"),
-            "14: :14:7: \"1e400\" is too large a number; check the number");
+            "14: :14:7: \"1e400\" is too large; check the number");
   EXPECT_EQ(error_with("1 2 3 4 5 6", "1 2 3 +1.5 1e-400 6"), "");
   std::string positions = replaced(kFile, "3 Zrotation Xrotation", "3 Xposition Xrotation");
   EXPECT_EQ(error_in(replaced(positions, "1 2 3", "1e30 2 3")),
-            "14: :14:15: a position in the row of frame 1 is too large to be a place; check the "
+            "14: :14:15: a position in the row of frame 1 is out of range; check the "
             "number and the unit of the file");
 }
 

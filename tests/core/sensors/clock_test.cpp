@@ -40,7 +40,7 @@ double largest_error_s(const Stream& stream, unsigned seed, ClockModel& clock) {
       const double true_s = begin_s + i / stream.rate_hz;
       const auto tick = static_cast<std::uint64_t>(
           std::llround((i / stream.rate_hz + 3.0) * (1.0 - stream.drift) * 1e4));
-      device.push_back(ticks.take(tick % 65536).time_s);
+      device.push_back(ticks.unwrap(tick % 65536).time_s);
       host.push_back(true_s);
       const double told =
           clock.observe(device.back(), begin_s + (end - 1) / stream.rate_hz + late_s);

@@ -362,7 +362,7 @@ TEST(SlimeVr, AnswersHandshakesAndDropsDatagramsOutOfOrder) {
   feed(
       "00000003 0000000000000000 00000001 00000000 00000000 00000000 00000000 00000000 00000013"
       "03 312E30 AABBCCDDEEFF");
-  const auto replies = parser->take_replies();
+  const auto replies = parser->pop_replies();
   ASSERT_EQ(replies.size(), 1u);
   EXPECT_EQ(replies[0].size(), 64u);
   EXPECT_EQ(Bytes(replies[0].begin(), replies[0].begin() + 13),

@@ -45,7 +45,7 @@ class Host:
                     data += port.read(port.in_waiting)
                     self.heard[index] += data
                     parts[index].append(parsed(self.parsers[index], data))
-                    for reply in self.parsers[index].take_replies():
+                    for reply in self.parsers[index].pop_replies():
                         port.write(reply)
         finally:
             for port in ports:
@@ -188,7 +188,7 @@ def test_data_without_a_layout_make_the_host_ask_for_it() -> None:
     force = np.array([[0.0, 0.0, 9.8], [1.0, 2.0, 3.0]])
     for counter in range(3):
         assert len(parsed(parser, b"".join(device.encode(0.01 * counter, counter, force)))) == 0
-    asked = parser.take_replies()
+    asked = parser.pop_replies()
     assert [packet[2] for packet in asked] == [0x30, 0x0C, 0x10]
     parser.feed(device.respond(b"".join(asked)))
     samples = parsed(parser, b"".join(device.encode(0.03, 3, force)))
@@ -197,5 +197,5 @@ def test_data_without_a_layout_make_the_host_ask_for_it() -> None:
 
 
 def test_a_driver_without_options_has_none_to_offer() -> None:
-    with pytest.raises(ConfigError, match="it has none at all"):
+    with pytest.raises(ConfigError, match="it has no options"):
         StreamParser("slimevr", rate_hz=100)

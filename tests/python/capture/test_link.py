@@ -62,7 +62,7 @@ def until(is_so: Callable[[], Any], timeout_s: float = 10.0) -> None:
 @pytest.fixture(autouse=True)
 def impatience(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(link_module, "STALL_S", 0.3)
-    monkeypatch.setattr(link_module, "PUZZLED_S", 0.5)
+    monkeypatch.setattr(link_module, "UNDECODED_S", 0.5)
     monkeypatch.setattr(link_module, "REOPEN_S", 1.2)
 
 
@@ -186,11 +186,11 @@ def test_silence_is_a_stall_and_then_another_try(links: Links, device: Device) -
     until(lambda: notes.connections)
     device.send(b"s")
     until(lambda: link.state is State.STALLED)
-    assert "no sample for 0.3 s" in link.message
+    assert "no data for 0.3 s" in link.message
     device.send(b"s")
     until(lambda: link.state is State.STREAMING)
     until(lambda: len(notes.connections) == 2)
-    assert any("nothing came for" in message for message in notes.messages)
+    assert any("check that the device is on" in message for message in notes.messages)
 
 
 def test_bytes_that_mean_nothing_raise_the_question(links: Links, device: Device) -> None:
@@ -220,7 +220,7 @@ def test_the_text_of_a_boot_is_borne(links: Links, device: Device) -> None:
 def test_a_port_that_never_opened_fails_with_a_message(links: Links, tmp_path: Path) -> None:
     link, notes = links(str(tmp_path / "nothing"))
     until(lambda: link.state is State.FAILED)
-    assert "there is no such port" in link.message
+    assert "no such port" in link.message
     assert notes.states == [State.OPENING, State.FAILED]
 
 
@@ -305,7 +305,7 @@ def test_however_a_port_breaks_it_is_opened_again(
     links: Links, call: str, error: Exception
 ) -> None:
     broken, whole = Broken(call, error), Broken("", error)
-    opened = iter([broken, PortError("/dev/x: there is no such port"), whole])
+    opened = iter([broken, PortError("/dev/x: no such port"), whole])
 
     def opener(port: str, baud: int) -> Broken:
         result = next(opened)

@@ -79,7 +79,7 @@ def test_records_longer_than_a_block_are_whole(tmp_path: Path) -> None:
 def test_another_file_is_no_log(tmp_path: Path) -> None:
     other = tmp_path / "other"
     other.write_bytes(b"time_s,sensor,ax,ay,az\n")
-    with pytest.raises(ValueError, match="is no raw log"):
+    with pytest.raises(ValueError, match="is not a raw log"):
         list(read_records(other))
 
 
@@ -164,7 +164,7 @@ def test_who_was_stalled_too_long_goes_on_with_the_oldest_left(
     ):  # fmt: skip
         for begin in range(0, 100, 10):
             log.append(some_samples(begin, 10))
-            log.give_up()
+            log.remove_old()
         assert len(list(tmp_path.iterdir())) == 3
         assert late.read()["counter"].tolist() == list(range(64, 100))
         # The file that it has open is there for it still, where the system allows that.

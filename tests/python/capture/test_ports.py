@@ -61,14 +61,14 @@ def refusal(port: str) -> str:
 
 
 def test_a_missing_port_says_so(tmp_path: Path) -> None:
-    assert "there is no such port; plug the device in" in refusal(str(tmp_path / "ttyUSB0"))
+    assert "no such port; plug the device in" in refusal(str(tmp_path / "ttyUSB0"))
 
 
 def test_a_busy_port_says_so() -> None:
     master, slave = os.openpty()
     name = os.ttyname(slave)
     with open_port(name, 115200):
-        assert "another program has the port open" in refusal(name)
+        assert "in use by another program" in refusal(name)
     open_port(name, 115200).close()
     os.close(master)
     os.close(slave)
@@ -77,13 +77,13 @@ def test_a_busy_port_says_so() -> None:
 def test_what_is_no_port_says_so(tmp_path: Path) -> None:
     file = tmp_path / "file"
     file.write_text("")
-    assert "is no serial port" in refusal(str(file))
-    assert "is no serial port" in refusal(str(tmp_path))
+    assert "not a serial port" in refusal(str(file))
+    assert "not a serial port" in refusal(str(tmp_path))
 
 
 def test_nobody_at_the_other_end_says_so() -> None:
-    assert "nothing listens there" in refusal("socket://127.0.0.1:1")
-    assert "nothing listens there" in refusal("rfc2217://127.0.0.1:1")
+    assert "connection refused" in refusal("socket://127.0.0.1:1")
+    assert "connection refused" in refusal("rfc2217://127.0.0.1:1")
     assert "protocol 'carrier-pigeon' not known" in refusal("carrier-pigeon://x")
 
 
@@ -92,5 +92,5 @@ def test_a_forbidden_port_names_the_group(monkeypatch: pytest.MonkeyPatch) -> No
         raise serial.SerialException(13, "could not open port /dev/ttyUSB0: [Errno 13] Permission")
 
     monkeypatch.setattr(ports.serial, "serial_for_url", forbid)
-    assert "permission denied; add yourself to the group" in refusal("/dev/ttyUSB0")
+    assert "permission denied; add yourself to the port's group" in refusal("/dev/ttyUSB0")
     assert "dialout" in refusal("/dev/ttyUSB0")

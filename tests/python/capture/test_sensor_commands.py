@@ -92,7 +92,7 @@ def test_what_is_emulated_is_recorded(
                    "--seconds", 2.9)  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(f"{tmp_path / 'own.csv'}: 3 sensors, 900 samples")
-    assert "nobody said where the sensors are worn" in done.stderr
+    assert "sensor locations not given" in done.stderr
     recorded = read_take(tmp_path / "own.csv")
     check_same(recorded, take)
     assert recorded.sensors["left_wrist"].orientation is not None
@@ -129,7 +129,7 @@ def test_a_recording_whose_command_was_killed_is_taken_up_again(
     again = command(*arguments)
     (session,) = sessions()
     assert again.returncode == 1
-    assert f"is being recorded; see --attach {session.pid}" in again.stderr
+    assert f"already recording; continue it with --attach {session.pid}" in again.stderr
     time.sleep(3.0)
     attached = start("record", "--attach", "-o", tmp_path / "own.csv")
     time.sleep(1.5)
@@ -165,14 +165,14 @@ def test_what_a_killed_capture_left_is_recovered(
 
 
 REFUSED = {
-    "missing port": (("--port", "{}/nothing", "--driver", DRIVER), 1, "there is no such port"),
+    "missing port": (("--port", "{}/nothing", "--driver", DRIVER), 1, "no such port"),
     "no port": (("--driver", DRIVER), 2, "--port"),
     "no driver": (("--port", "loop://"), 2, "--driver"),
     "unknown driver": (("--port", "loop://", "--driver", "abacus"), 2, "abacus"),
     "unknown option": (
         ("--port", "loop://", "--driver", DRIVER, "--option", "a=b"), 1, 'has no option "a"',
     ),
-    "nothing to attach to": (("--attach",), 1, "no capture runs"),
+    "nothing to attach to": (("--attach",), 1, "no running capture"),
     "nothing to recover": (("--recover", "{}/nothing"), 1, "nothing"),
     "unknown site": (("--port", "loop://", "--driver", DRIVER, "--sites", "nose"), 2, "nose"),
 }  # fmt: skip

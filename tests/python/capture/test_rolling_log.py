@@ -13,7 +13,13 @@ import numpy as np
 import pytest
 from capture_support import SITES, some_take
 from sparse_mocap import Take
-from sparse_mocap.capture import CaptureConfig, LinkConfig, kept_log, recording_to_take, sample_log
+from sparse_mocap.capture import (
+    CaptureConfig,
+    LinkConfig,
+    recording_to_take,
+    rolling_log,
+    sample_log,
+)
 from sparse_mocap.capture.drivers import Encoder
 from sparse_mocap.capture.emulator import instants
 from sparse_mocap.capture.recorder import Recorder
@@ -69,7 +75,7 @@ class Sender:
 
 @pytest.fixture
 def clock_ns(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    monkeypatch.setattr(kept_log, "FULL_BYTES", 8_000)
+    monkeypatch.setattr(rolling_log, "FULL_BYTES", 8_000)
     monkeypatch.setattr(sample_log, "PER_FILE", 300)
     clock_ns = [10**12]
     monkeypatch.setattr(time, "monotonic_ns", lambda: clock_ns[0])
@@ -130,7 +136,7 @@ def test_watching_alone_needs_no_more_and_no_more_room(
         device.play(10.0)
         sizes.append(size(tmp_path))
     _, num_sensors, _ = SETTINGS[name]
-    most_raw = 4 * (kept_log.FULL_BYTES + 20_000) + 4_000
+    most_raw = 4 * (rolling_log.FULL_BYTES + 20_000) + 4_000
     assert max(sizes) < most_raw + 4 * 300 * 72 * num_sensors
     # What is left of it is readable, as after a crash, and holds no wrong sample.
     left = recording_to_take(tmp_path)

@@ -6,7 +6,7 @@ import time
 import pytest
 
 from blender_addon.session.errors import InputError
-from blender_addon.session.opened import Shelf
+from blender_addon.session.file_cache import FileCache
 
 
 class Loader:
@@ -34,9 +34,9 @@ def file(tmp_path):
     return path
 
 
-def _settled(shelf, path):
+def _settled(cache, path):
     deadline = time.monotonic() + 10
-    while (entry := shelf.peek(str(path))).is_opening:
+    while (entry := cache.peek(str(path))).is_opening:
         assert time.monotonic() < deadline
         time.sleep(0.001)
     return entry
@@ -44,49 +44,49 @@ def _settled(shelf, path):
 
 def test_get_opens_once_until_the_file_changes(file):
     loader = Loader()
-    shelf = Shelf("thing", loader)
-    assert shelf.get(str(file)) == shelf.get(str(file)) == "one"
+    cache = FileCache("thing", loader)
+    assert cache.get(str(file)) == cache.get(str(file)) == "one"
     assert len(loader.paths) == 1
     file.write_text("other")
-    assert shelf.get(str(file)) == "other"
-    shelf.forget()
-    assert shelf.get(str(file)) == "other"
+    assert cache.get(str(file)) == "other"
+    cache.forget()
+    assert cache.get(str(file)) == "other"
     assert len(loader.paths) == 3
 
 
 def test_peek_answers_at_once_and_knows_later(file):
     loader = Loader()
     loader.may_go_on.clear()
-    shelf = Shelf("thing", loader)
-    assert shelf.peek(str(file)).is_opening
-    assert shelf.peek(str(file)).is_opening
+    cache = FileCache("thing", loader)
+    assert cache.peek(str(file)).is_opening
+    assert cache.peek(str(file)).is_opening
     loader.may_go_on.set()
-    assert _settled(shelf, file).value == "one"
-    assert shelf.get(str(file)) == "one"
+    assert _settled(cache, file).value == "one"
+    assert cache.get(str(file)) == "one"
     assert len(loader.paths) == 1
 
 
 def test_peek_tells_what_is_wrong_in_one_line(file):
-    shelf = Shelf("thing", Loader())
+    cache = FileCache("thing", Loader())
     file.write_text("")
-    assert _settled(shelf, file).error == f"{file}: is empty"
+    assert _settled(cache, file).error == f"{file}: is empty"
     os.remove(file)
-    assert "No such file" in _settled(shelf, file).error
+    assert "No such file" in _settled(cache, file).error
 
 
 def test_a_file_peeked_at_meanwhile_is_not_overwritten_by_a_late_one(file, tmp_path):
     loader = Loader()
     loader.may_go_on.clear()
-    shelf = Shelf("thing", loader)
-    shelf.peek(str(file))
+    cache = FileCache("thing", loader)
+    cache.peek(str(file))
     second = tmp_path / "second.txt"
     second.write_text("two")
-    shelf.peek(str(second))
+    cache.peek(str(second))
     loader.may_go_on.set()
-    assert _settled(shelf, second).value == "two"
+    assert _settled(cache, second).value == "two"
 
 
 @pytest.mark.parametrize("path", ["", "a\0b", os.curdir])
 def test_what_is_no_file_is_said(path):
     with pytest.raises(InputError, match="thing"):
-        Shelf("thing", Loader()).get(path)
+        FileCache("thing", Loader()).get(path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that were opened, kept for the panels and the steps that need them."""
+"""Opened files, cached for the panels and operators that use them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Entry(Generic[T]):
-    """One file as it was at one time: still opening (neither), opened, or not to be opened."""
+    """A file with its time stamp: opened, failed to open (error), or still opening (neither)."""
 
     path: str
     stamp: tuple[int, int]
@@ -29,8 +29,8 @@ class Entry(Generic[T]):
         return self.value is None and not self.error
 
 
-class Shelf(Generic[T]):
-    """The one file of a kind that is in use; a changed file is opened anew."""
+class FileCache(Generic[T]):
+    """Caches the last opened file of a kind; opens it again when it has changed on disk."""
 
     def __init__(self, what: str, load: Callable[[str], T]) -> None:
         self._what = what
@@ -40,18 +40,18 @@ class Shelf(Generic[T]):
         self._threads: list[threading.Thread] = []
 
     def get(self, path: str) -> T:
-        """The opened file. Raises InputError, OSError or what the file is at fault for."""
+        """The opened file. Raises InputError, OSError or FormatError."""
         stamp = self._stamp(path)
         entry = self._entry
         is_known = entry is not None and (entry.path, entry.stamp) == (path, stamp)
         if is_known and entry.value is not None:
             return entry.value
         value = self._load(path)
-        self._keep(Entry(path, stamp, value))
+        self._store(Entry(path, stamp, value))
         return value
 
     def peek(self, path: str) -> Entry[T]:
-        """What is known of the file at once; an unknown one is opened on a thread meanwhile."""
+        """The file's entry without waiting; opens the file on a thread when it is not cached."""
         try:
             stamp = self._stamp(path)
         except (InputError, OSError) as error:
@@ -68,16 +68,16 @@ class Shelf(Generic[T]):
         return opening
 
     def wait(self, seconds: float) -> None:
-        """Give what is being opened that long."""
+        """Wait at most this long for files being opened."""
         for thread in self._threads:
             thread.join(seconds)
 
     def forget(self) -> None:
-        """Let go of the file."""
-        self._keep(None)
+        """Drop the cached file."""
+        self._store(None)
 
     def close(self) -> None:
-        """Let go of the file and wait for what is still being opened."""
+        """Drop the cached file and wait for files being opened."""
         self.forget()
         for thread in self._threads:
             thread.join()
@@ -91,15 +91,17 @@ class Shelf(Generic[T]):
             if self._entry is opening:
                 self._entry = opened
 
-    def _keep(self, entry: Entry[T] | None) -> None:
+    def _store(self, entry: Entry[T] | None) -> None:
         with self._lock:
             self._entry = entry
 
     def _stamp(self, path: str) -> tuple[int, int]:
         if not path:
-            raise InputError(f"No {self._what} is chosen yet")
+            raise InputError(f"Choose a {self._what} first")
         if "\0" in path:
-            raise InputError(f"The name of the {self._what} has a character that no file can have")
+            raise InputError(
+                f"The path of the {self._what} contains an invalid character: choose the file again"
+            )
         if os.path.isdir(path):
             raise InputError(f"{path} is a folder: choose a {self._what} file")
         status = os.stat(path)

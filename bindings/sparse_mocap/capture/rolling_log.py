@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The raw log of a capture that may go on for days: what is recorded stays, of the rest the newest.
+"""A rolling raw log: keeps everything that is recorded, and the newest minutes of the rest.
 
-While nothing is recorded the log goes on in a new file whenever one is full, and the oldest is
-given up. A file is read alone by what it repeats: how each connection began, up to the first sample
-and whatever changed a sensor's name, for there devices tell how their data are laid out.
+While nothing is recorded, a new file is started whenever one is full, and the oldest is deleted.
+Each file can be read on its own, because it repeats how each connection began: everything up to the
+first sample, and what changed a sensor's name. There, devices describe the layout of their data.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from typing import Any
 from .raw_log import BEGUN, RawLogWriter, Record, log_path
 
 FULL_BYTES = 16 << 20
-"""A file beyond this is full: five minutes of six sensors at 200 Hz."""
+"""Size at which a file is full: five minutes of six sensors at 200 Hz."""
 MOST_SPARE = 2
-"""So many full files are kept of what nobody records."""
+"""Number of full files kept while nothing is recorded."""
 _LONGEST_BEGIN = 1 << 16
 
 
@@ -31,21 +31,21 @@ class _Begin:
     event: dict[str, Any]
     opened_ns: int
     records: list[Record] = field(default_factory=list)
-    heard: set[str] = field(default_factory=set)
-    """The senders of samples; all bytes of a port have one, ""."""
+    senders: set[str] = field(default_factory=set)
+    """Senders whose first sample has arrived; "" for the bytes of a serial port."""
     num_bytes: int = 0
 
 
-class KeptLog:
-    """Appends to the raw log of a capture and gives up what nobody needs. Raises OSError."""
+class RollingLog:
+    """Appends to the raw log of a capture and deletes old files. Raises OSError."""
 
     def __init__(self, folder: Path, about: dict[str, Any]) -> None:
-        """Takes the event that every file begins with."""
+        """about: the event at the start of every file."""
         self._folder, self._about = folder, about
         self._writer = RawLogWriter(folder)
         self._writer.append_event(0, time.monotonic_ns(), about)
         self._begins: dict[int, _Begin] = {}
-        self._is_needed = False
+        self._is_recorded = False
         self._is_due = False
         self._spare: deque[int] = deque()
 
@@ -61,45 +61,45 @@ class KeptLog:
         """Appends bytes or a datagram of a link."""
         self._writer.append(record)
 
-    def learnt(self, record: Record, sender: str, *, has_samples: bool, has_news: bool) -> None:
-        """What became of the record appended last: samples, or another name of a sensor."""
+    def decoded(self, record: Record, sender: str, *, has_samples: bool, has_news: bool) -> None:
+        """Tells whether the last record contained samples, or a new name of a sensor."""
         begin = self._begins.get(record.link)
-        if begin is None or (sender in begin.heard and not has_news):
+        if begin is None or (sender in begin.senders and not has_news):
             return
         begin.num_bytes += len(record.payload)
         if begin.num_bytes <= _LONGEST_BEGIN:
             begin.records.append(record)
             if has_samples:
-                begin.heard.add(sender)
+                begin.senders.add(sender)
 
-    def keep(self) -> None:
-        """A recording begins: what is there by now stays, and all until it ends."""
-        self._is_needed = True
+    def begin_recording(self) -> None:
+        """Keeps the existing files, and everything until the recording ends."""
+        self._is_recorded = True
         self._spare.clear()
 
-    def release(self) -> None:
-        """The recording has ended."""
+    def end_recording(self) -> None:
+        """Starts a new file soon, so that the recorded one is complete."""
         self._is_due = True
 
-    def go_on(self) -> RawLogWriter | None:
-        """Begins a new file when that is due; returns the old one's writer, which is to be closed.
+    def roll_over(self) -> RawLogWriter | None:
+        """Starts a new file if one is due; returns the old file's writer, for the caller to close.
 
-        Not to be called while something is recorded.
+        Must not be called while recording.
         """
         if not self._is_due and self._writer.num_bytes < FULL_BYTES:
             return None
         old, self._writer = self._writer, self._next()
-        if not self._is_needed:
+        if not self._is_recorded:
             self._spare.append(old.number)
-        self._is_needed = self._is_due = False
+        self._is_recorded = self._is_due = False
         while len(self._spare) > MOST_SPARE:
-            with suppress(OSError):  # somebody reads it, where that forbids to remove it
+            with suppress(OSError):  # on Windows, a file that is being read cannot be removed
                 log_path(self._folder, self._spare[0]).unlink()
             self._spare.popleft()
         return old
 
     def sync(self) -> None:
-        """Waits until the disk has what was appended."""
+        """Waits until everything is on disk."""
         self._writer.sync()
 
     def close(self) -> None:
