@@ -4,9 +4,9 @@
 
 #include "common.hpp"
 #include "sparse_mocap/database/model.hpp"
+#include "sparse_mocap/database/clip_motion.hpp"
 #include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/database/stored_models.hpp"
-#include "sparse_mocap/motion/heading.hpp"
 
 namespace sparse_mocap::python {
 namespace {
@@ -32,32 +32,6 @@ py::array view_of(const Database& database, const std::string& name) {
                  py::cast(database));
   view.attr("setflags")(py::arg("write") = false);
   return view;
-}
-
-// A clip's rows turned back into a motion: poses from the angles, the root by integration.
-Motion clip_motion(const MotionDatabase& database, int index) {
-  if (index < 0 || index >= static_cast<int>(database.clips().size()))
-    throw py::index_error("the database has " + std::to_string(database.clips().size()) + " clips");
-  const Clip& clip = database.clips()[static_cast<std::size_t>(index)];
-  std::vector<PoseEstimate> estimates;
-  Vec3 position = Vec3::Zero();
-  double yaw = 0.0;
-  for (int frame = clip.begin; frame < clip.end; ++frame) {
-    const auto rates = database.root_motion().row(frame).cast<double>();
-    using namespace root_motion_column;
-    if (frame > clip.begin) {
-      position += yaw_rotation(yaw) * Vec3(rates[velocity_left], 0.0, rates[velocity_forward]) *
-                  database.frame_time_s();
-      yaw += rates[yaw_rate] * database.frame_time_s();
-    }
-    position.y() = rates[height];
-    PoseEstimate estimate;
-    estimate.angles = database.angles().row(frame).transpose().cast<double>();
-    estimate.root_position = position;
-    estimate.yaw_rad = yaw;
-    estimates.push_back(std::move(estimate));
-  }
-  return to_motion(estimates, database.skeleton(), database.rate_hz());
 }
 
 std::vector<std::pair<std::string, std::string>> pairs_of(const std::vector<LeftOut>& files) {

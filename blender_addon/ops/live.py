@@ -12,7 +12,7 @@ from bpy.types import Context, Operator
 from ..scene import live as live_scene
 from ..scene.armature import select_only
 from ..scene.performance import perform_steps
-from ..scene.settings import settings_of
+from ..scene.settings import scene_choice, settings_of
 from ..session import live, sensors
 from ..session.database import Database
 from ..session.errors import InputError
@@ -143,7 +143,7 @@ class SPARSEMOCAP_OT_go_live(JobOperator, Operator):
         session = connected()
         database, calibration = result
         rig = live_scene.live_rig(context, database.motions.skeleton)
-        session.go_live(database, settings_of(context.scene).preset, calibration)
+        session.go_live(database, scene_choice(context.scene), calibration)
         live_scene.follow(rig)
         return f'Live preview on "{rig.armature.name}"'
 
@@ -192,7 +192,7 @@ class SPARSEMOCAP_OT_stop_take(JobOperator, Operator):
             bpy.path.abspath(settings.database),
             bpy.path.abspath(settings.calibration),
             takes_folder(bpy.data.filepath),
-            settings.preset,
+            scene_choice(context.scene),
         )
 
     def apply(self, context: Context, result: SavedTake) -> Steps[str]:

@@ -31,7 +31,7 @@ class Facts:
     """What the panel shows of an action."""
 
     duration_s: float
-    misfit_mps2: float
+    match: str
     is_guess: bool
 
 
@@ -57,7 +57,7 @@ def perform_steps(
                 remove_armature(rig.armature)
             raise
     armature = rig.armature
-    facts = Facts(performance.duration_s, performance.misfit_mps2, performance.is_guess)
+    facts = Facts(performance.duration_s, performance.match, performance.is_guess)
     action[_FACTS] = asdict(facts)
     use_quaternions(armature)
     assign_action(armature, action)

@@ -13,12 +13,31 @@ from bpy.props import (
 )
 from bpy.types import Context, PropertyGroup, Scene
 
+from ..session.methods import (
+    Items,
+    MethodChoice,
+    choice_of,
+    method_items,
+    preset_items,
+    written_options,
+)
 from ..session.port_scanner import port_scanner
 
-PRESETS = (
-    ("default", "Default", "Tuned for smooth, steady motion"),
-    ("paper", "Paper", "The constants of the publication (Tautges et al. 2011)"),
-)
+_kept_items: dict[str, Items] = {}
+"""Blender does not keep the texts of menus that are made on the fly; this does."""
+
+
+def _kept(key: str, items: Items) -> Items:
+    _kept_items[key] = items or [("default", "Default", "The default settings")]
+    return _kept_items[key]
+
+
+def _methods(_: PropertyGroup, __: Context) -> Items:
+    return _kept("methods", method_items())
+
+
+def _presets(settings: PropertyGroup, _: Context) -> Items:
+    return _kept(f"presets of {settings.method}", preset_items(settings.method))
 
 
 def _ports(_: PropertyGroup, __: Context, text: str) -> list[str]:
@@ -33,6 +52,13 @@ class SPARSEMOCAP_PG_source(PropertyGroup):
     """Another folder or motion file."""
 
     path: StringProperty(name="Path", description="A folder of motion files, or a single file")
+
+
+class SPARSEMOCAP_PG_option(PropertyGroup):
+    """An option of the method and the value to use instead of the default."""
+
+    name: StringProperty(name="Option")
+    value: StringProperty(name="Value", description="The value to use; press X for the default")
 
 
 class SPARSEMOCAP_PG_settings(PropertyGroup):
@@ -82,7 +108,11 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
         name="Build from motion files", description="Build another motion database"
     )
     take: StringProperty(name="Take", description="The recorded take (.csv) to reconstruct")
-    preset: EnumProperty(name="Preset", description="How to reconstruct", items=PRESETS)
+    method: EnumProperty(name="Method", description="How motion is reconstructed", items=_methods)
+    preset: EnumProperty(
+        name="Preset", description="The settings of the method", items=_presets
+    )
+    options: CollectionProperty(type=SPARSEMOCAP_PG_option)
     offline: BoolProperty(
         name="Best quality",
         description=(
@@ -152,9 +182,21 @@ def settings_of(scene: Scene) -> SPARSEMOCAP_PG_settings:
     return scene.sparse_mocap
 
 
+def options_text(settings: SPARSEMOCAP_PG_settings) -> str:
+    """The options that differ from the method's defaults, as operators take them."""
+    return written_options([(option.name, option.value) for option in settings.options])
+
+
+def scene_choice(scene: Scene) -> MethodChoice:
+    """The method that the scene's settings name. Raises InputError."""
+    settings = settings_of(scene)
+    return choice_of(settings.method, settings.preset, options_text(settings))[0]
+
+
 def register() -> None:
     """Register the settings."""
     bpy.utils.register_class(SPARSEMOCAP_PG_source)
+    bpy.utils.register_class(SPARSEMOCAP_PG_option)
     bpy.utils.register_class(SPARSEMOCAP_PG_settings)
     Scene.sparse_mocap = PointerProperty(type=SPARSEMOCAP_PG_settings)
 
@@ -163,4 +205,5 @@ def unregister() -> None:
     """Unregister the settings."""
     del Scene.sparse_mocap
     bpy.utils.unregister_class(SPARSEMOCAP_PG_settings)
+    bpy.utils.unregister_class(SPARSEMOCAP_PG_option)
     bpy.utils.unregister_class(SPARSEMOCAP_PG_source)

@@ -14,14 +14,15 @@ MODULES = (
     "sparse_mocap._core",
     "sparse_mocap.calibration_file",
     "sparse_mocap.mappings",
+    "sparse_mocap.methods",
     "sparse_mocap.readings",
     "sparse_mocap.reconstruction",
+    "sparse_mocap.report",
     "sparse_mocap.take",
 )
 CAPTURE_MODULES = (
     "sparse_mocap.capture.client",
     "sparse_mocap.capture.drivers",
-    "sparse_mocap.capture.live_readings",
     "sparse_mocap.capture.ports",
     "sparse_mocap.capture.recording",
     "sparse_mocap.capture",

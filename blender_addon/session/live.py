@@ -12,9 +12,11 @@ from dataclasses import dataclass, field, replace
 from queue import SimpleQueue
 from typing import Any
 
+from .core import core
 from .database import Database
 from .errors import InputError, one_line
 from .live_poses import LivePoses, Pose, Quality
+from .methods import MethodChoice
 
 STOP_WITHIN_S = 1.0
 ANSWER_WITHIN_S = 10.0
@@ -59,7 +61,7 @@ class LiveSession:
         self._active: tuple[Database, str, Any] | None = None
         self._poses: LivePoses | None = None
         self._sites: dict[int, str] = {}
-        self._with_gyroscope: frozenset[int] = frozenset()
+        self._channels: list[list[str]] = []
         self._thread = threading.Thread(target=self._run, name="Sparse Mocap: live", daemon=True)
 
     @property
@@ -83,9 +85,11 @@ class LiveSession:
             self._thread.join(STOP_WITHIN_S)
         return not self._thread.is_alive()
 
-    def go_live(self, database: Database, preset: str, calibration: Any = None) -> None:
+    def go_live(
+        self, database: Database, choice: MethodChoice, calibration: Any = None
+    ) -> None:
         """Start the live preview. calibration: as for LivePoses."""
-        self._wanted = (database, preset, calibration)
+        self._wanted = (database, choice, calibration)
 
     def use_calibration(self, calibration: Any) -> None:
         """Use another calibration in a running live preview."""
@@ -163,11 +167,9 @@ class LiveSession:
             if link["state"] == "failed":
                 raise InputError(link["message"] or f"{link['port']}: cannot be used")
         sites = {i: sensor["site"] for i, sensor in enumerate(status["sensors"])}
-        with_gyroscope = frozenset(
-            i for i, sensor in enumerate(status["sensors"]) if sensor["has_gyroscope"]
-        )
-        is_settled = (sites, with_gyroscope) == (self._sites, self._with_gyroscope)
-        self._sites, self._with_gyroscope = sites, with_gyroscope
+        channels = [core().readings.measured_channels(sensor) for sensor in status["sensors"]]
+        is_settled = (sites, channels) == (self._sites, self._channels)
+        self._sites, self._channels = sites, channels
         wanted = self._wanted
         if not is_settled or wanted is not self._active:
             self._poses = None
@@ -183,10 +185,10 @@ class LiveSession:
             quality=self._poses.quality() if self._poses else Quality(),
         )
 
-    def _begin_poses(self, database: Database, preset: str, calibration: Any) -> None:
+    def _begin_poses(self, database: Database, choice: MethodChoice, calibration: Any) -> None:
         try:
             self._poses = LivePoses(
-                database.motions, self._sites, preset, calibration, self._with_gyroscope
+                database.motions, self._sites, self._channels, choice, calibration
             )
             self._update(warning="", num_dropped=0)
         except Exception as error:  # shown until the sensors or their locations change

@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .core import capture, core
+from .core import core
 from .errors import InputError
+from .methods import MethodChoice
 
-MOST_BEHIND = 15
-"""More readings than this that wait for the solver are given up, and it begins anew."""
-_WINDOW = 250  # poses, for what is shown
+LARGEST_BACKLOG = 15
+"""If more readings than this are waiting, only the newest is used."""
+_NUM_POSES = 250  # that figures are averaged over
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,8 @@ class Quality:
     num_poses: int = 0
     num_skipped: int = 0
     """Readings that came faster than poses could be made of them."""
-    misfit_mps2: float = 0.0
+    match: str = ""
+    """How well the sensors match the motion database: good, fair or poor."""
     latency_s: float = 0.0
     """Median time from the sensors' reading to the pose."""
     worst_latency_s: float = 0.0
@@ -45,73 +47,62 @@ class Quality:
 
 
 class LivePoses:
-    """Reconstructs what sensors read, as it comes; use it from one thread."""
+    """Reconstructs poses from samples as they come; use it from one thread."""
 
     def __init__(
         self,
         motions: Any,
         sensors: dict[int, str],
-        preset: str,
+        channels: list[list[str]],
+        choice: MethodChoice,
         calibration: Any = None,
-        with_gyroscope: frozenset[int] = frozenset(),
     ) -> None:
-        """sensors: where each sensor of the capture is worn, by its number there.
+        """sensors: the location of each sensor of the capture, by its number there.
 
-        calibration: sparse_mocap.calibration.Calibration; None: worn as the paper does.
+        channels: what each measures. calibration: sparse_mocap.calibration.Calibration; None: the
+        sensors are worn in the default orientation.
         """
-        self._has_up = [number in with_gyroscope for number in sensors]
-        self._worn = core().calibration.worn_as(calibration, list(sensors.values()))
         known = core().site_names()
-        for site in self._worn.sites:
+        for site in sensors.values() if calibration is None else ():
             if site not in known:
-                raise InputError(f'Unknown sensor location "{site}": set the sensor locations')
-        channels = core().readings.Channels(self._worn.sites, self._worn.places, self._has_up)
-        self._solver = channels.reconstructor(motions, preset=preset)
-        live_readings = capture().live_readings
-        self._readings = live_readings.LiveReadings(
-            list(sensors), motions.rate_hz, self._has_up, self._worn.gyroscope_biases
+                raise InputError(f'Unknown sensor location "{site}": enter where it is worn')
+        self._reconstructor = core().LiveReconstructor(
+            sensors,
+            channels,
+            motions,
+            **choice.arguments(),
+            calibration=calibration,
+            largest_backlog=LARGEST_BACKLOG,
         )
-        self._times_s: deque[float] = deque(maxlen=self._solver.latency_frames + 1)
-        self._misfits: deque[float] = deque(maxlen=_WINDOW)
-        self.latencies_s: deque[float] = deque(maxlen=_WINDOW)
-        self._num_poses = self._num_skipped = 0
+        self._match = core().report.LiveMatch(_NUM_POSES)
+        self.latencies_s: deque[float] = deque(maxlen=_NUM_POSES)
+        self._num_poses = 0
 
     def advance(self, samples: Any) -> Pose | None:
-        """Take in samples, and return the newest pose that is due, None when none is."""
-        self._readings.add(samples)
-        readings = self._readings.ready(time.monotonic())
-        if len(readings) > MOST_BEHIND:
-            self._num_skipped += len(readings) - 1
-            readings = readings[-1:]
-            self._solver.reset()
-            self._times_s.clear()
+        """Add samples, and return the newest pose that is due, None when none is."""
+        self._reconstructor.push(samples)
         pose = None
-        for reading in readings:
-            self._times_s.append(reading.time_s)
-            estimate = self._solver.step(self._worn.ideal(reading.values, self._has_up))
-            if estimate is not None:
-                pose = self._pose(estimate)
+        for estimate in self._reconstructor.advance(time.monotonic()):
+            pose = self._pose(estimate)
         return pose
 
     def quality(self) -> Quality:
         """How the last poses came out."""
+        num_skipped = self._reconstructor.num_skipped
         if not self.latencies_s:
-            return Quality(num_skipped=self._num_skipped)
+            return Quality(num_skipped=num_skipped)
         middle, worst = np.quantile(self.latencies_s, [0.5, 0.99])
-        misfit = float(np.mean(self._misfits)) if self._misfits else 0.0
-        return Quality(self._num_poses, self._num_skipped, misfit, float(middle), float(worst))
+        return Quality(
+            self._num_poses, num_skipped, self._match.match, float(middle), float(worst)
+        )
 
     def _pose(self, estimate: Any) -> Pose:
         self._num_poses += 1
-        misfits = np.asarray(estimate.sensor_misfit_mps2)
-        heard = misfits[np.isfinite(misfits)]
-        if len(heard):
-            self._misfits.append(float(heard.mean()))
-        time_s = self._times_s[0]
-        self.latencies_s.append(time.monotonic() - time_s)
+        self._match.add(estimate)
+        self.latencies_s.append(time.monotonic() - estimate.time_s)
         return Pose(
             self._num_poses,
             np.array(estimate.rotations),
             np.array(estimate.root_position),
-            time_s,
+            estimate.time_s,
         )

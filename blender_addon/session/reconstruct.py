@@ -10,6 +10,7 @@ from .calibrating import calibration_at
 from .core import core
 from .database import Database, databases
 from .job import Job, Progress
+from .methods import MethodChoice
 from .take import LoadedTake, takes
 
 RECONSTRUCTING = "Reconstructing"
@@ -22,19 +23,24 @@ class Performance:
     name: str
     motion: Any  # sparse_mocap.Motion
     duration_s: float
-    misfit_mps2: float
-    """Mean distance of the retrieved readings from the measured ones."""
+    match: str
+    """How well the sensors match the motion database: good, fair or poor."""
     is_guess: bool
-    """Whether the database holds nothing like it."""
+    """Whether the database has nothing like the take."""
 
 
 def reconstruct_job(
-    database_path: str, take_path: str, calibration_path: str = "", *, preset: str, offline: bool
+    database_path: str,
+    take_path: str,
+    calibration_path: str = "",
+    *,
+    choice: MethodChoice,
+    best_quality: bool,
 ) -> Job:
     """The job that reconstructs a take from a database; its result is a Performance.
 
-    calibration_path: empty for sensors that are worn as the paper does. Raises InputError, or what
-    the files are at fault for.
+    calibration_path: empty for sensors in the default orientation. Raises InputError, or what is
+    wrong with the files.
     """
     core()
     database = databases.get(database_path)
@@ -46,8 +52,8 @@ def reconstruct_job(
             database,
             take,
             calibration=calibration,
-            preset=preset,
-            offline=offline,
+            choice=choice,
+            best_quality=best_quality,
             progress=progress,
         )
 
@@ -59,27 +65,25 @@ def reconstruct(
     take: LoadedTake,
     *,
     calibration: Any = None,
-    preset: str,
-    offline: bool,
+    choice: MethodChoice,
+    best_quality: bool,
     progress: Progress,
 ) -> Performance:
-    """The performance of the take. Raises what the core has to say about it."""
+    """The motion of the take. Raises what the core reports."""
     sparse_mocap = core()
-    worn, places = take.take, None
-    if calibration is not None:
-        worn = sparse_mocap.calibration.apply(calibration, take.take)
-        places = sparse_mocap.calibration.places_of(calibration, take.take)
-    readings = sparse_mocap.readings.readings_of(
-        worn, database.rate_hz, places=places, offline=offline
+    solved = sparse_mocap.reconstruct(
+        take.take,
+        database.motions,
+        best_quality=best_quality,
+        **choice.arguments(),
+        calibration=calibration,
+        progress=progress,
     )
-    solver = readings.channels.reconstructor(database.motions, preset=preset)
-    solved = solver.solve(readings.values, offline=offline, progress=progress)
     motion = solved.motion
-    quality = sparse_mocap.reconstruction
     return Performance(
         name=take.name,
         motion=motion,
         duration_s=(motion.num_frames - 1) * motion.frame_time_s,
-        misfit_mps2=quality.mean_misfit_mps2(solved),
-        is_guess=quality.is_unlike_the_database(solved, readings.specific_force),
+        match=sparse_mocap.report.match(solved),
+        is_guess=sparse_mocap.report.is_unlike_the_database(solved),
     )

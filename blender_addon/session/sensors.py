@@ -13,6 +13,7 @@ from .database import databases
 from .errors import InputError, one_line
 from .job import Job, Progress
 from .live import ANSWER_WITHIN_S, LiveSession, answer_of, one_line_of
+from .methods import MethodChoice
 from .new_files import free_path, stamp
 from .reconstruct import Performance, reconstruct
 from .take import takes
@@ -93,7 +94,11 @@ def live_preview_job(database_path: str, calibration_path: str) -> Job:
 
 
 def save_take_job(
-    session: LiveSession, database_path: str, calibration_path: str, folder: Path, preset: str
+    session: LiveSession,
+    database_path: str,
+    calibration_path: str,
+    folder: Path,
+    choice: MethodChoice,
 ) -> Job:
     """The job that stops the recording, saves and reconstructs it; its result is a SavedTake."""
     module = capture()
@@ -109,8 +114,8 @@ def save_take_job(
                 databases.get(database_path),
                 takes.get(path),
                 calibration=calibration_at(calibration_path),
-                preset=preset,
-                offline=False,
+                choice=choice,
+                best_quality=False,
                 progress=progress,
             )
         except Exception as error:  # the take is saved all the same

@@ -10,7 +10,6 @@ from ..session import live, sensors
 from ..session.calibrating import CALIBRATING
 from ..session.core import missing_reason
 from ..session.live import LiveSession, LiveState
-from ..session.match import match_of
 from ..session.port_scanner import port_scanner
 from . import text
 from .step import StepPanel, action_button, job_is_running, redraw_soon
@@ -133,7 +132,7 @@ def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
         text.error(layout, context, state.warning)
     if session.is_live_wanted and quality.num_poses:
         rows = [
-            ("Match", match_of(quality.misfit_mps2)),
+            ("Sensors match", quality.match),
             ("Delay", f"{1e3 * quality.latency_s:.0f} ms"),
         ]
         dropped = quality.num_skipped + state.num_dropped

@@ -7,8 +7,9 @@ from bpy.types import Context, Panel, UILayout
 
 from ..scene.armature import is_ours
 from ..scene.performance import facts_of, performed_action
-from ..scene.settings import settings_of
+from ..scene.settings import SPARSEMOCAP_PG_settings, settings_of
 from ..session.core import missing_reason
+from ..session.methods import has_best_quality, preset_items
 from ..session.reconstruct import RECONSTRUCTING
 from . import text
 from .step import StepPanel, action_button
@@ -27,15 +28,15 @@ class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
         return not missing_reason()
 
     def draw(self, context: Context) -> None:
-        """The choices, the button, and what the active armature performs."""
+        """The choices, the button, and the action of the active armature."""
         settings = settings_of(context.scene)
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        layout.row().prop(settings, "preset", expand=True)
-        row = layout.row(align=True, heading="Mode")
-        row.prop(settings, "offline", text="Online", toggle=True, invert_checkbox=True)
-        row.prop(settings, "offline", text="Offline", toggle=True)
+        layout.prop(settings, "method")
+        if len(preset_items(settings.method)) > 1:
+            layout.prop(settings, "preset")
+        _quality(layout, settings)
         layout.prop(settings, "start_frame")
         layout.prop(settings, "calibration")
         if any(is_ours(obj) for obj in context.view_layer.objects):
@@ -52,6 +53,36 @@ class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
         _performed(layout, context)
 
 
+class SPARSEMOCAP_PT_options(StepPanel, Panel):
+    """The options of the method."""
+
+    bl_idname = "SPARSEMOCAP_PT_options"
+    bl_label = "Method Options"
+    bl_parent_id = "SPARSEMOCAP_PT_reconstruct"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Context) -> None:
+        """The options that differ from their defaults."""
+        settings = settings_of(context.scene)
+        column = self.layout.column(align=True)
+        for index, option in enumerate(settings.options):
+            row = column.row(align=True)
+            split = row.split(factor=0.6, align=True)
+            split.label(text=option.name.replace("_", " "))
+            split.prop(option, "value", text="")
+            row.operator("sparse_mocap.remove_option", text="", icon="X").index = index
+        self.layout.operator("sparse_mocap.add_option", icon="ADD")
+
+
+def _quality(layout: UILayout, settings: SPARSEMOCAP_PG_settings) -> None:
+    """Live or best quality; only live where the method has no other."""
+    row = layout.row(align=True, heading="Quality")
+    row.prop(settings, "offline", text="Live", toggle=True, invert_checkbox=True)
+    best = row.row(align=True)
+    best.enabled = has_best_quality(settings.method)
+    best.prop(settings, "offline", text="Best", toggle=True)
+
+
 def _performed(layout: UILayout, context: Context) -> None:
     """What the active armature performs."""
     action = performed_action(context.view_layer.objects.active)
@@ -62,13 +93,13 @@ def _performed(layout: UILayout, context: Context) -> None:
             ("Action", action.name),
             ("Duration", text.duration(facts.duration_s)),
             ("Frames", f"{first:.0f} to {last:.0f}"),
-            ("Misfit", f"{facts.misfit_mps2:.2f} m/s²"),
+            ("Sensors match", facts.match),
         ]
         text.facts(layout, rows)
         if facts.is_guess:
             text.paragraph(
-                layout, context, "The database holds nothing like this take", icon="ERROR"
+                layout, context, "The motion database has nothing like this take", icon="ERROR"
             )
 
 
-CLASSES = (SPARSEMOCAP_PT_reconstruct,)
+CLASSES = (SPARSEMOCAP_PT_reconstruct, SPARSEMOCAP_PT_options)

@@ -63,9 +63,7 @@ class LiveSession:
 
     def advance(self) -> None:
         """Takes what has arrived and makes the poses that are due."""
-        samples = self._client.read()
-        self._reconstructor.push(samples)
-        self._live_match.add_samples(samples["sensor"], samples["specific_force"])
+        self._reconstructor.push(self._client.read())
         begin = time.perf_counter()
         estimates = self._reconstructor.advance(time.monotonic())
         for estimate in estimates:
@@ -91,7 +89,7 @@ class LiveSession:
 
     def _add_pose(self, estimate: PoseEstimate) -> None:
         self.num_poses += 1
-        self._live_match.add_pose(estimate)
+        self._live_match.add(estimate)
         self.latencies_s.append(time.monotonic() - estimate.time_s)
         if self._begin_s is None:
             self._begin_s = estimate.time_s

@@ -13,7 +13,7 @@ from ..alignment import aligned
 from ..body_file import read_body
 from ..calibration_file import read_calibration
 from ..reconstruction import reconstruct as reconstruct_take
-from ..report import is_unlike_the_database, match, relative_misfit, report, unit_warnings
+from ..report import is_unlike_the_database, match, report, unit_warnings
 from .console import progress_bar, warn, write_json
 from .options import (
     FilePath,
@@ -169,7 +169,7 @@ def _print_summary(output: Path, solved: Reconstruction) -> None:
     quality = "best quality" if late is None else f"live quality, {1000.0 * late:.0f} ms behind"
     click.echo(
         f"{output}: {solved.motion.num_frames} frames, {quality}; sensors match the motion "
-        f"database: {match(relative_misfit(solved))}"
+        f"database: {match(solved)}"
     )
     if is_unlike_the_database(solved):
         click.echo(

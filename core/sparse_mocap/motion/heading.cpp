@@ -33,6 +33,16 @@ std::vector<double> headings(const Motion& standard_motion) {
   return out;
 }
 
+std::vector<Quat> pose_rotations(const Skeleton& skeleton, const Eigen::VectorXd& angles,
+                                 double yaw_rad) {
+  std::vector<Quat> rotations;
+  for (int j = 0; j < skeleton.num_joints(); ++j)
+    rotations.emplace_back(
+        joint_rotation(skeleton.joint(j), angles.data() + skeleton.angle_begin(j)));
+  rotations[0] = Quat(yaw_rotation(yaw_rad)) * rotations[0];
+  return rotations;
+}
+
 Eigen::MatrixXd joint_positions(const Motion& motion, PositionFrame frame) {
   const int n = motion.skeleton.num_joints();
   Eigen::MatrixXd out(3 * n, motion.num_frames());

@@ -18,6 +18,10 @@ double heading_of(const JointTransforms& standard_pose, double last_rad);
 // The headings of a motion on a standard skeleton, continuous; one a frame.
 std::vector<double> headings(const Motion& standard_motion);
 
+// The joint rotations of a pose vector (rad) whose root has no heading, turned to yaw_rad.
+std::vector<Quat> pose_rotations(const Skeleton& skeleton, const Eigen::VectorXd& angles,
+                                 double yaw_rad);
+
 // In which frame joint positions are given; root position removed in the first two.
 enum class PositionFrame {
   heading,  // heading removed: y up, x left, z forward

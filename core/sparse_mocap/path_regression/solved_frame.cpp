@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "sparse_mocap/motion/heading.hpp"
 #include "sparse_mocap/sensors/filter.hpp"
 
 namespace sparse_mocap::path_regression {

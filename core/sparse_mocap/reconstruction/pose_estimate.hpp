@@ -28,10 +28,6 @@ struct PoseEstimate {
   Diagnostics diagnostics;
 };
 
-// The rotations of a pose vector (rad) whose root has no heading, turned to yaw_rad.
-std::vector<Quat> pose_rotations(const Skeleton& skeleton, const Eigen::VectorXd& angles,
-                                 double yaw_rad);
-
 // The estimates as a motion in the world.
 Motion to_motion(const std::vector<PoseEstimate>& estimates, const Skeleton& skeleton,
                  double rate_hz);

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "sparse_mocap/base/errors.hpp"
-#include "sparse_mocap/motion/standard_skeleton.hpp"
+#include "sparse_mocap/motion/heading.hpp"
 #include "sparse_mocap/retrieval/diagnostics.hpp"
 #include "sparse_mocap/retrieval/pose_minimizer.hpp"
 #include "sparse_mocap/tautges2011/control.hpp"

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The methods of reconstruction, as menus show them and as the core asks for them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .core import core, missing_reason
+from .errors import InputError
+
+Items = list[tuple[str, str, str]]
+"""Identifiers, labels and descriptions."""
+
+
+@dataclass(frozen=True)
+class MethodChoice:
+    """A method with its settings; empty: the default."""
+
+    method: str = ""
+    preset: str = ""
+    options: tuple[tuple[str, str], ...] = ()
+
+    def arguments(self) -> dict[str, Any]:
+        """The arguments of the core's reconstruct() and LiveReconstructor."""
+        return {
+            "method": self.method or None,
+            "preset": self.preset or None,
+            "options": dict(self.options),
+        }
+
+
+def choice_of(method: str, preset: str, options: str) -> tuple[MethodChoice, str]:
+    """The choice, and a warning if a name has changed; options: "KEY=VALUE, KEY=VALUE".
+
+    Raises InputError for text that is not of that form.
+    """
+    new_method, new_preset, renamed = core().methods.renamed_preset(method or None, preset or None)
+    return MethodChoice(new_method or "", new_preset or "", parsed_options(options)), renamed
+
+
+def parsed_options(text: str) -> tuple[tuple[str, str], ...]:
+    """The options in "KEY=VALUE, KEY=VALUE". Raises InputError."""
+    pairs = []
+    for part in filter(None, (part.strip() for part in text.split(","))):
+        name, equals, value = (piece.strip() for piece in part.partition("="))
+        if not (name and equals and value):
+            raise InputError(f'"{part}" is not NAME=VALUE, for example: num_paths=128')
+        pairs.append((name, value))
+    return tuple(pairs)
+
+
+def written_options(pairs: list[tuple[str, str]]) -> str:
+    """The options as parsed_options reads them."""
+    return ", ".join(f"{name}={value}" for name, value in pairs)
+
+
+def method_items() -> Items:
+    """All methods, the default first."""
+    return [(method.name, method.title, method.summary) for method in _methods()]
+
+
+def preset_items(method: str) -> Items:
+    """The presets of a method, the default first."""
+    return [
+        (preset.name, preset.name.replace("_", " ").capitalize(), preset.help)
+        for known in _methods()
+        if known.name == method
+        for preset in known.presets
+    ]
+
+
+def option_items(method: str) -> Items:
+    """The options of a method; descriptions say what is possible."""
+    return [
+        (option.name, option.name, f"{option.help} ({possible_values(option)})")
+        for known in _methods()
+        if known.name == method
+        for option in known.options
+    ]
+
+
+def default_of(method: str, option: str) -> str:
+    """The default value of an option as text."""
+    for known in _methods():
+        for candidate in known.options:
+            if (known.name, candidate.name) == (method, option):
+                return str(candidate.default)
+    return ""
+
+
+def has_best_quality(method: str) -> bool:
+    """Whether the method can use the whole take for every frame."""
+    return any(known.works_on_whole_takes for known in _methods() if known.name == method)
+
+
+def possible_values(option: Any) -> str:
+    """What an option can be."""
+    if option.kind == "flag":
+        return "true or false"
+    if option.choices:
+        return ", ".join(option.choices)
+    return f"{option.lowest:g} to {option.highest:g}"
+
+
+def _methods() -> tuple[Any, ...]:
+    return () if missing_reason() else core().methods.methods()
