@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "support/refusals.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
@@ -112,8 +113,8 @@ TEST(Resampler, DropsSamplesThatComeTwiceOrAreBroken) {
   EXPECT_FALSE(resampler.push(0, 1.0, Vec3::UnitX()));
   EXPECT_FALSE(resampler.push(0, 0.5, Vec3::UnitX()));
   EXPECT_FALSE(resampler.push(0, 2.0, Vec3(std::nan(""), 0.0, 0.0)));
-  EXPECT_THROW(Resampler(0, 25.0), std::invalid_argument);
-  EXPECT_THROW(Resampler(1, 0.0), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "sensors and a positive rate", Resampler(0, 25.0));
+  EXPECT_REFUSED(std::invalid_argument, "sensors and a positive rate", Resampler(1, 0.0));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "sparse_mocap/base/errors.hpp"
+#include "support/refusals.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap::tautges2011 {
@@ -89,8 +90,8 @@ TEST(Reconstructor, RefusesSettingsThatCannotWork) {
 
 TEST(Reconstructor, RefusesReadingsOfOtherSensors) {
   Reconstructor method(shared_database(), paper_sensors(), preset("paper"));
-  EXPECT_THROW(method.step(Reading::Zero(3, 3)), ConfigError);
-  EXPECT_THROW(method.step(Reading::Zero(3, 5)), ConfigError);
+  EXPECT_REFUSED(ConfigError, "4 sensors is expected, got 3", method.step(Reading::Zero(3, 3)));
+  EXPECT_REFUSED(ConfigError, "4 sensors is expected, got 5", method.step(Reading::Zero(3, 5)));
   EXPECT_TRUE(method.step(Reading::Zero(3, 4)).has_value());
 }
 

@@ -12,7 +12,7 @@ from sparse_mocap import (
     build_database,
     read_motion,
     readings_of,
-    to_standard,
+    standard_motion,
 )
 
 
@@ -24,7 +24,7 @@ def built(folder: Path, path: Path) -> MotionDatabase:
 
 def truth(performance: Path, database: MotionDatabase) -> Motion:
     """A motion file as a perfect reconstruction would give it."""
-    motion, _ = to_standard(read_motion(performance)[0], database.skeleton)
+    motion, _ = standard_motion(read_motion(performance)[0], database.skeleton)
     return motion.resampled(database.rate_hz)
 
 
