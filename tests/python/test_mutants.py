@@ -57,3 +57,34 @@ def test_a_mutant_that_no_longer_applies_is_named(
     said = runner.Mutant(**(entry | changed)).problem()
     assert said.startswith("fault: ")
     assert problem in said
+
+
+def test_only_a_mutant_that_a_test_notices_counts_as_killed(
+    runner: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    verdicts = {
+        "noticed": runner.Verdict(["test_a.py::test_b", "test_a.py::test_c"]),
+        "unnoticed": runner.Verdict(),
+        "crashed": runner.Verdict(["test_a.py::test_b"], "pytest ended with code -11"),
+        "does not build": runner.Verdict(["test_a.py::test_b"]),
+    }
+    applied: list[str] = []
+
+    def build() -> None:
+        if applied[-1] == "does not build":
+            raise runner.Broken("error: expected ';'")
+
+    monkeypatch.setattr(runner.Mutant, "apply", lambda self: applied.append(self.name))
+    monkeypatch.setattr(runner.Mutant, "undo", lambda self: None)
+    monkeypatch.setattr(runner, "build", build)
+    monkeypatch.setattr(runner, "packed", lambda name: name)
+    monkeypatch.setattr(runner, "verdict", lambda name, tests: verdicts[name])
+    chosen = [runner.Mutant(name, "it", "file", "a", "b", []) for name in verdicts]
+    assert runner.judge(chosen) == 3
+    said = capsys.readouterr().out.splitlines()[1::2]
+    assert [line.strip() for line in said] == [
+        "killed by test_a.py::test_b and 1 more",
+        "SURVIVED",
+        "NO VERDICT: pytest ended with code -11",
+        "NO VERDICT: error: expected ';'",
+    ]
