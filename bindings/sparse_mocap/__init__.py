@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Full-body motion from a few inertial sensors and a database of motion capture.
 
-Names are loaded when they are first used, so that what needs no compiled core (the generator of
-the demonstration's motions) works without one.
+Names are loaded when they are first used, so that the package can be imported, and say what is
+missing, where its compiled core cannot be loaded.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from support import Skipped, expected_performance, library
 
-SCRIPT = Path(__file__).parents[2] / "bindings/sparse_mocap/demo/render_scene.py"
+SCRIPT = Path(__file__).parents[2] / "bindings/sparse_mocap_demo/render_scene.py"
 
 
 def _make(folder: Path, *options: str) -> subprocess.CompletedProcess:

@@ -14,7 +14,7 @@ import pytest
 import sparse_mocap
 from click.testing import CliRunner, Result
 from sparse_mocap.cli.app import app
-from sparse_mocap.demo.generator import generate_library, generate_performance
+from sparse_mocap_demo.generator import generate_library, generate_performance
 
 ROOT = Path(__file__).resolve().parents[2]
 ACTORS = ("ada", "bruno")

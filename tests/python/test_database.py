@@ -149,9 +149,9 @@ def test_an_impossible_rate_is_refused(library: Path, tmp_path: Path, rate: floa
 
 
 def test_no_source_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(FormatError):
+    with pytest.raises(FormatError, match=r"holds no \.bvh or \.amc file"):
         build_database([], tmp_path / "db.smdb")
-    with pytest.raises(FormatError) as caught:
+    with pytest.raises(FormatError, match=r"holds no \.bvh or \.amc file") as caught:
         build_database([tmp_path], tmp_path / "db.smdb")
     assert caught.value.path == str(tmp_path)
 
@@ -172,7 +172,7 @@ DAMAGE = {
 def test_a_damaged_database_is_refused(database_path: Path, tmp_path: Path, name: str) -> None:
     path = tmp_path / "damaged.smdb"
     path.write_bytes(DAMAGE[name](database_path.read_bytes()))
-    with pytest.raises(FormatError) as caught:
+    with pytest.raises(FormatError, match="not a sound motion database") as caught:
         MotionDatabase(path)
     assert str(caught.value).startswith(str(path))
     assert len(str(caught.value).splitlines()) == 1

@@ -19,9 +19,9 @@ def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
     def fail() -> None:
         with replaced(path) as temporary:
             temporary.write_text("half", encoding="utf-8")
-            raise RuntimeError
+            raise RuntimeError("halfway")
 
-    with pytest.raises(RuntimeError):
+    with pytest.raises(RuntimeError, match="halfway"):
         fail()
     assert path.read_text(encoding="utf-8") == "old"
     assert list(tmp_path.iterdir()) == [path]

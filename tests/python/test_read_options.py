@@ -87,7 +87,7 @@ def test_a_skeleton_alone_is_read_when_it_is_allowed(tmp_path: Path) -> None:
     motion, _ = read_motion(path, allow_no_frames=True)
     assert motion.num_frames == 0
     assert motion.skeleton.names == ["root", "up"]
-    with pytest.raises(FormatError):
+    with pytest.raises(FormatError, match="is not a motion file"):
         read_motion(path)
 
 

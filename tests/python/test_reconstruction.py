@@ -112,14 +112,15 @@ def test_other_sets_of_sensors_work(
 
 
 def test_wrong_arguments_are_refused(database: MotionDatabase, readings: np.ndarray) -> None:
-    for sites in ([], ["nose"]):
-        with pytest.raises(ConfigError):
-            Reconstructor(database, sites)
+    with pytest.raises(ConfigError, match="at least one sensor"):
+        Reconstructor(database, [])
+    with pytest.raises(ConfigError, match="unknown sensor 'nose'"):
+        Reconstructor(database, ["nose"])
     with pytest.raises(ConfigError, match="magic"):
         Reconstructor(database, SITES, method="magic")
     with pytest.raises(ConfigError, match="magic"):
         Reconstructor(database, SITES, preset="magic")
-    with pytest.raises(ConfigError):
+    with pytest.raises(ConfigError, match="every clip of the database is excluded"):
         Reconstructor(database, SITES, excluded_clips=range(len(database.clips)))
     with pytest.raises(ValueError, match="places"):
         Reconstructor(database, SITES, places=[1.0])

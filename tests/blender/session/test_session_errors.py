@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+import re
 import sys
 
 import pytest
@@ -42,7 +43,7 @@ def test_a_missing_package_is_explained(looked_for, module, said):
     looked_for(module)
     assert said in core.missing_reason()
     assert "install" in core.missing_reason()
-    with pytest.raises(InputError):
+    with pytest.raises(InputError, match=re.escape(said)):
         core.core()
 
 

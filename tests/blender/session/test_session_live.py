@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import sparse_mocap
 from live_support import DRIVER, OPTIONS, emulated, is_alive, own_runtime, until
 from sparse_mocap.capture import CaptureClient
-from sparse_mocap.demo.generator import generate_library
+from sparse_mocap_demo.generator import generate_library
 
 from blender_addon.session import live, sensors
 from blender_addon.session.database import open_database

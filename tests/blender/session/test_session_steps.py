@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 import sparse_mocap
-from sparse_mocap.demo.generator import generate_performance
+from sparse_mocap_demo.generator import generate_performance
 
 from blender_addon.session import database, reconstruct, take
 from blender_addon.session.errors import InputError
@@ -39,8 +39,8 @@ def test_output_is_beside_the_folder_and_gets_its_ending(tmp_path):
 
 
 def test_sources_that_are_none_are_refused(tmp_path):
-    for source in ("", str(tmp_path / "nowhere")):
-        with pytest.raises(InputError):
+    for source, said in (("", "folder of motion files"), (str(tmp_path / "nowhere"), "nowhere")):
+        with pytest.raises(InputError, match=said):
             database.build_job([source], str(tmp_path / "x"), database.BuildChoices())
 
 

@@ -12,6 +12,7 @@
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/base/mapped_file.hpp"
 #include "sparse_mocap/base/progress.hpp"
+#include "support/refusals.hpp"
 
 namespace sparse_mocap {
 namespace {
@@ -84,8 +85,8 @@ TEST(MapFile, ShowsTheFileAsItWasWhenOpened) {
 TEST(MapFile, TakesEmptyFilesAndRefusesWhatIsNoFile) {
   const TemporaryFolder folder;
   EXPECT_TRUE(map_file(folder.write("empty", ""))->view().empty());
-  EXPECT_THROW(map_file(folder / "none"), FormatError);
-  EXPECT_THROW(map_file(folder.path()), FormatError);
+  EXPECT_REFUSED(FormatError, "no such file", map_file(folder / "none"));
+  EXPECT_REFUSED(FormatError, "is not a regular file", map_file(folder.path()));
   EXPECT_EQ(own_bytes({std::byte{1}, std::byte{2}})->view().size(), 2U);
 }
 

@@ -13,6 +13,7 @@
 #include "sparse_mocap/database/source_files.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
 #include "sparse_mocap/motion/heading.hpp"
+#include "support/refusals.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
@@ -132,7 +133,8 @@ TEST_F(BuildDatabase, AddsCopiesAtOtherTempos) {
   }
   for (const double tempo : {0.0, -1.0, 100.0, std::nan("")}) {
     options.tempo_copies = {tempo};
-    EXPECT_THROW(build_database({folder_ / "in"}, output_, options), ConfigError);
+    EXPECT_REFUSED(ConfigError, "a tempo must be between",
+                   build_database({folder_ / "in"}, output_, options));
   }
 }
 
@@ -152,7 +154,8 @@ TEST_F(BuildDatabase, LeavesOutWhatIsExcluded) {
   ASSERT_EQ(files.size(), 1U);
   EXPECT_EQ(files[0].path.filename(), "anna_turn_001.bvh");
   EXPECT_EQ(build_database({folder_ / "in"}, output_, options).num_clips, 1);
-  EXPECT_THROW(find_source_files({folder_ / "in"}, {"*"}), FormatError);
+  EXPECT_REFUSED(FormatError, "every motion file is excluded",
+                 find_source_files({folder_ / "in"}, {"*"}));
 }
 
 TEST_F(BuildDatabase, ListsEachFileOnceAndSorted) {
@@ -164,15 +167,19 @@ TEST_F(BuildDatabase, ListsEachFileOnceAndSorted) {
 }
 
 TEST_F(BuildDatabase, RefusesSourcesThatAreNoMotion) {
-  EXPECT_THROW(find_source_files({folder_ / "nowhere"}, {}), FormatError);
-  EXPECT_THROW(find_source_files({folder_ / "in/notes.txt"}, {}), FormatError);
-  EXPECT_THROW(find_source_files({}, {}), FormatError);
+  EXPECT_REFUSED(FormatError, "no such file or folder",
+                 find_source_files({folder_ / "nowhere"}, {}));
+  EXPECT_REFUSED(FormatError, "is neither .bvh nor .amc",
+                 find_source_files({folder_ / "in/notes.txt"}, {}));
+  EXPECT_REFUSED(FormatError, "holds no .bvh or .amc file", find_source_files({}, {}));
   fs::create_directories(folder_ / "empty");
-  EXPECT_THROW(find_source_files({folder_ / "empty"}, {}), FormatError);
+  EXPECT_REFUSED(FormatError, "holds no .bvh or .amc file",
+                 find_source_files({folder_ / "empty"}, {}));
   BuildOptions options;
   for (const double rate : {0.0, -25.0, 1e6, std::nan("")}) {
     options.rate_hz = rate;
-    EXPECT_THROW(build_database({folder_ / "in"}, output_, options), ConfigError);
+    EXPECT_REFUSED(ConfigError, "the frame rate must be between",
+                   build_database({folder_ / "in"}, output_, options));
   }
 }
 
@@ -192,13 +199,14 @@ TEST_F(BuildDatabase, SkipsBrokenFilesAndSaysWhyUnlessStrict) {
   fs::remove(output_);
   BuildOptions strict;
   strict.is_strict = true;
-  EXPECT_THROW(build_database({folder_ / "in"}, output_, strict), FormatError);
+  EXPECT_REFUSED(FormatError, "broken.bvh:", build_database({folder_ / "in"}, output_, strict));
   EXPECT_EQ(listing(), std::vector<std::string>{"in"});
 }
 
 TEST_F(BuildDatabase, LeavesNothingBehindWhenItFails) {
   folder_.write("broken.bvh", "HIERARCHY\n");
-  EXPECT_THROW(build_database({folder_ / "broken.bvh"}, output_, {}), FormatError);
+  EXPECT_REFUSED(FormatError, "none of 1 motion files can be used",
+                 build_database({folder_ / "broken.bvh"}, output_, {}));
   EXPECT_EQ(listing(), (std::vector<std::string>{"broken.bvh", "in"}));
   EXPECT_THROW(build_database({folder_ / "in"}, folder_ / "none/out.smdb", {}),
                fs::filesystem_error);

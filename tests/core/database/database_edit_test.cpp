@@ -14,6 +14,7 @@
 #include "sparse_mocap/database/builder.hpp"
 #include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
+#include "support/refusals.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
@@ -98,7 +99,7 @@ TEST_F(EditDatabase, AnyNumberOfThreadsBuildsTheSameFile) {
     EXPECT_EQ(content(build({"a", "b"}, "n.smdb")), one) << threads << " threads";
   }
   options_.num_threads = -1;
-  EXPECT_THROW(build({"a"}, "n.smdb"), ConfigError);
+  EXPECT_REFUSED(ConfigError, "the number of threads", build({"a"}, "n.smdb"));
 }
 
 TEST_F(EditDatabase, StrictNamesTheFirstBadFileWhicheverThreadMeetsIt) {
@@ -242,8 +243,8 @@ TEST_F(EditDatabase, ChangingKeepsTheOldFileWhenItFails) {
                Cancelled);
   fs::create_directories(folder_ / "bad");
   folder_.write("bad/x.bvh", "HIERARCHY\n");
-  EXPECT_THROW(add(folder_ / "a.smdb", "bad"), FormatError);
-  EXPECT_THROW(add(folder_ / "none.smdb", "b"), FormatError);
+  EXPECT_REFUSED(FormatError, "none of 1 motion files can be used", add(folder_ / "a.smdb", "bad"));
+  EXPECT_REFUSED(FormatError, "no such file", add(folder_ / "none.smdb", "b"));
   EXPECT_EQ(content(folder_ / "a.smdb"), before);
 }
 

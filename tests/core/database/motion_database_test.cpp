@@ -12,6 +12,7 @@
 #include "sparse_mocap/base/files.hpp"
 #include "sparse_mocap/database/container.hpp"
 #include "sparse_mocap/database/database_content.hpp"
+#include "support/refusals.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
@@ -108,17 +109,18 @@ TEST(MotionDatabase, GivesBackWhatWasWritten) {
 TEST(MotionDatabase, RefusesContentThatDoesNotCorrespond) {
   DatabaseContent content = small_content(5);
   content.clips.clear();
-  EXPECT_THROW(encode_database(content), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "do not correspond", encode_database(content));
   content.clips.resize(2);
-  EXPECT_THROW(encode_database(content), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "do not correspond", encode_database(content));
 }
 
 TEST(MotionDatabase, RefusesMissingFilesAndFolders) {
   const TemporaryFolder folder;
-  EXPECT_THROW(MotionDatabase::open(folder / "none.smdb"), FormatError);
-  EXPECT_THROW(MotionDatabase::open(folder.path()), FormatError);
+  EXPECT_REFUSED(FormatError, "no such file", MotionDatabase::open(folder / "none.smdb"));
+  EXPECT_REFUSED(FormatError, "is not a regular file", MotionDatabase::open(folder.path()));
   folder.write("empty.smdb", "");
-  EXPECT_THROW(MotionDatabase::open(folder / "empty.smdb"), FormatError);
+  EXPECT_REFUSED(FormatError, "not a sound motion database",
+                 MotionDatabase::open(folder / "empty.smdb"));
 }
 
 TEST(MotionDatabase, RefusesAFileCutAtAnyLength) {

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "sparse_mocap/base/checksum.hpp"
+#include "sparse_mocap/base/errors.hpp"
+#include "support/refusals.hpp"
 
 namespace sparse_mocap {
 namespace {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/format_test_support.hpp"
+#include "support/refusals.hpp"
 
 namespace sparse_mocap {
 namespace {
@@ -83,7 +84,7 @@ TEST_F(SidecarTable, SaysWhereItIsWrong) {
   EXPECT_TRUE(contains(error(""), "is empty"));
   EXPECT_TRUE(contains(error("\n  \n"), "is empty"));
   EXPECT_TRUE(contains(error(std::string("file\0actor", 10)), "NUL"));
-  EXPECT_THROW(Sidecar::read(folder_ / "none.csv"), FormatError);
+  EXPECT_REFUSED(FormatError, "no such file", Sidecar::read(folder_ / "none.csv"));
 }
 
 TEST_F(SidecarTable, WarnsOfRowsThatNameNoFile) {

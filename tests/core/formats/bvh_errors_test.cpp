@@ -9,6 +9,7 @@
 
 #include "formats/format_test_support.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
+#include "support/refusals.hpp"
 
 namespace sparse_mocap {
 namespace {
@@ -256,11 +257,11 @@ TEST(ReadBvhRefuses, WhatIsNoFile) {
 }
 
 TEST(ReadBvhRefuses, OptionsOutOfRange) {
-  EXPECT_THROW(read_bvh("a.bvh", {.max_joints = 0}), ConfigError);
-  EXPECT_THROW(read_bvh("a.bvh", {.max_depth = 0}), ConfigError);
-  EXPECT_THROW(read_bvh("a.bvh", {.max_frames = -1}), ConfigError);
-  EXPECT_THROW(read_bvh("a.bvh", {.bvh_unit_m = 0.0}), ConfigError);
-  EXPECT_THROW(read_bvh("a.bvh", {.bvh_unit_m = std::nan("")}), ConfigError);
+  EXPECT_REFUSED(ConfigError, "max_joints", read_bvh("a.bvh", {.max_joints = 0}));
+  EXPECT_REFUSED(ConfigError, "max_depth", read_bvh("a.bvh", {.max_depth = 0}));
+  EXPECT_REFUSED(ConfigError, "max_frames", read_bvh("a.bvh", {.max_frames = -1}));
+  EXPECT_REFUSED(ConfigError, "bvh_unit_m", read_bvh("a.bvh", {.bvh_unit_m = 0.0}));
+  EXPECT_REFUSED(ConfigError, "bvh_unit_m", read_bvh("a.bvh", {.bvh_unit_m = std::nan("")}));
 }
 
 // Cut anywhere, a file is refused or, where the cut leaves a whole file, read.

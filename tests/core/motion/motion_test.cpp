@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "support/refusals.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
@@ -60,9 +61,9 @@ TEST(Trimmed, KeepsTheFramesAskedForAndRefusesOthers) {
   ASSERT_EQ(part.num_frames(), 5);
   for (int t = 0; t < 5; ++t)
     EXPECT_LT(worst_distance(part.transforms(t), motion.transforms(t + 3)), 1e-12);
-  EXPECT_THROW(trimmed(motion, -1, 3), std::invalid_argument);
-  EXPECT_THROW(trimmed(motion, 3, 3), std::invalid_argument);
-  EXPECT_THROW(trimmed(motion, 3, 13), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "0 <= begin < end", trimmed(motion, -1, 3));
+  EXPECT_REFUSED(std::invalid_argument, "0 <= begin < end", trimmed(motion, 3, 3));
+  EXPECT_REFUSED(std::invalid_argument, "0 <= begin < end", trimmed(motion, 3, 13));
 }
 
 TEST(Reversed, PlaysBackwardsAndTwiceIsTheMotionItself) {
@@ -103,14 +104,16 @@ TEST(Mirrored, TwiceIsTheMotionItself) {
 TEST(Mirrored, RefusesPartnersThatDoNotMatch) {
   const Motion motion = resting_motion(template_skeleton(), 1, 60.0);
   std::vector<int> partners = standard_left_right();
-  EXPECT_THROW(mirrored(motion, {}), std::invalid_argument);
-  partners[standard_joint::lfemur] = standard_joint::lfemur;
-  EXPECT_THROW(mirrored(motion, partners), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "one partner a joint", mirrored(motion, {}));
+  partners[standard_joint::rfemur] = standard_joint::rfemur;
+  EXPECT_REFUSED(std::invalid_argument, "partners must name each other",
+                 mirrored(motion, partners));
   partners = standard_left_right();
   std::swap(partners[standard_joint::lwrist], partners[standard_joint::lfemur]);
   std::swap(partners[standard_joint::rwrist], partners[standard_joint::rfemur]);
   EXPECT_NO_THROW(mirrored(motion, standard_left_right()));
-  EXPECT_THROW(mirrored(motion, partners), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "the two sides hang on different joints",
+                 mirrored(motion, partners));
 }
 
 TEST(LeftRightPairs, AreFoundByTheNamesOfManyExporters) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "support/refusals.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
@@ -45,30 +46,31 @@ Eigen::VectorXd ends_of(const Skeleton& skeleton, const Eigen::VectorXd& angles)
 }
 
 TEST(Skeleton, RefusesWhatIsNotATree) {
-  const auto refuses = [](std::vector<Joint> joints) {
-    EXPECT_THROW(Skeleton{std::move(joints)}, std::invalid_argument);
+  const auto refuses = [](std::vector<Joint> joints, std::string_view text) {
+    EXPECT_REFUSED(std::invalid_argument, text, Skeleton{std::move(joints)});
   };
   const Joint root = bare("root", -1);
-  refuses({bare("", -1)});
-  refuses({root, bare("root", 0)});
-  refuses({root, bare("a", -1)});
-  refuses({bare("a", 0)});
-  refuses({root, bare("a", 1)});
-  refuses({root, bare("a", 2), bare("b", 0)});
+  refuses({bare("", -1)}, "name empty or repeated: ''");
+  refuses({root, bare("root", 0)}, "name empty or repeated: 'root'");
+  refuses({root, bare("a", -1)}, "must precede it");
+  refuses({bare("a", 0)}, "must precede it");
+  refuses({root, bare("a", 1)}, "must precede it");
+  refuses({root, bare("a", 2), bare("b", 0)}, "must precede it");
 }
 
 TEST(Skeleton, RefusesWhatIsNotFiniteAndRepeatedAxes) {
-  const auto refuses = [](const std::function<void(Joint&)>& damage) {
+  const auto refuses = [](std::string_view text, const std::function<void(Joint&)>& damage) {
     Joint root = joint("root", -1, Vec3::Zero(), Vec3::Zero(), {});
     damage(root);
-    EXPECT_THROW(Skeleton({root}), std::invalid_argument);
+    EXPECT_REFUSED(std::invalid_argument, text, Skeleton({root}));
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  refuses([&](Joint& j) { j.bone.x() = nan; });
-  refuses([&](Joint& j) { j.offset_parent.z() = std::numeric_limits<double>::infinity(); });
-  refuses([&](Joint& j) { j.R_joint_axes(1, 2) = nan; });
-  refuses([&](Joint& j) { j.axes = {Axis::x, Axis::y, Axis::x}; });
-  refuses([&](Joint& j) { j.axes = {Axis::x, Axis::y, Axis::z, Axis::x}; });
+  refuses("are not finite", [&](Joint& j) { j.bone.x() = nan; });
+  refuses("are not finite",
+          [&](Joint& j) { j.offset_parent.z() = std::numeric_limits<double>::infinity(); });
+  refuses("are not finite", [&](Joint& j) { j.R_joint_axes(1, 2) = nan; });
+  refuses("repeats an axis", [&](Joint& j) { j.axes = {Axis::x, Axis::y, Axis::x}; });
+  refuses("repeats an axis", [&](Joint& j) { j.axes = {Axis::x, Axis::y, Axis::z, Axis::x}; });
 }
 
 TEST(Skeleton, KnowsItsJointsByNameAndWhereTheirAnglesBegin) {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "support/refusals.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap::retrieval {
@@ -69,14 +70,19 @@ double smooth(Random& random) { return random.in(-20.0, 20.0) + random.in(0.0, 9
 double on_grid(Random& random) { return random.below(3); }
 
 TEST(KnnIndex, RefusesWhatItCannotSearch) {
-  EXPECT_THROW(KnnIndex(FeatureRows(0, 3)), std::invalid_argument);
-  EXPECT_THROW(KnnIndex(FeatureRows::Zero(3, 2), {true}), std::invalid_argument);
-  EXPECT_THROW(KnnIndex(FeatureRows::Zero(2, 2), {false, false}), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "no rows to search", KnnIndex(FeatureRows(0, 3)));
+  EXPECT_REFUSED(std::invalid_argument, "one flag a row",
+                 KnnIndex(FeatureRows::Zero(3, 2), {true}));
+  EXPECT_REFUSED(std::invalid_argument, "no rows to search",
+                 KnnIndex(FeatureRows::Zero(2, 2), {false, false}));
   const KnnIndex index(FeatureRows::Zero(3, 2));
   std::vector<Neighbour> found;
-  EXPECT_THROW(index.search(std::vector<float>{0, 0}, 0, found), std::invalid_argument);
-  EXPECT_THROW(index.search(std::vector<float>{0, 0}, -1, found), std::invalid_argument);
-  EXPECT_THROW(index.search(std::vector<float>{0, 0, 0}, 1, found), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "k must be positive",
+                 index.search(std::vector<float>{0, 0}, 0, found));
+  EXPECT_REFUSED(std::invalid_argument, "k must be positive",
+                 index.search(std::vector<float>{0, 0}, -1, found));
+  EXPECT_REFUSED(std::invalid_argument, "of the features' size",
+                 index.search(std::vector<float>{0, 0, 0}, 1, found));
 }
 
 TEST(KnnIndex, FindsWhatBruteForceFinds) {

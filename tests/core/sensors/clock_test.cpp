@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "sparse_mocap/streams/unwrap.hpp"
+#include "support/refusals.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
@@ -160,9 +161,11 @@ TEST(ClockModel, BoundsTheDriftThatAFewArrivalsSuggest) {
 
 TEST(ClockModel, RefusesWhatIsNoTime) {
   ClockModel clock;
-  EXPECT_THROW(clock.observe(std::nan(""), 1.0), std::invalid_argument);
-  EXPECT_THROW(clock.observe(1.0, std::numeric_limits<double>::infinity()), std::invalid_argument);
-  EXPECT_THROW(ClockModel({.largest_drift = 0.0}), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "a time is not finite", clock.observe(std::nan(""), 1.0));
+  EXPECT_REFUSED(std::invalid_argument, "a time is not finite",
+                 clock.observe(1.0, std::numeric_limits<double>::infinity()));
+  EXPECT_REFUSED(std::invalid_argument, "a setting is out of its range",
+                 ClockModel({.largest_drift = 0.0}));
 }
 
 }  // namespace

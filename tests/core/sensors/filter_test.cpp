@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sparse_mocap/base/conventions.hpp"
+#include "support/refusals.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
@@ -23,8 +24,10 @@ std::vector<double> even_times(int count, double rate_hz) {
 
 TEST(FilteredAt, RefusesValuesThatDoNotFitTheTimes) {
   const std::vector<double> none, two{0.0, 1.0};
-  EXPECT_THROW(filtered_at(none, Eigen::MatrixXd(1, 0), two, {0.1}), std::invalid_argument);
-  EXPECT_THROW(filtered_at(two, Eigen::MatrixXd(1, 3), two, {0.1}), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "one column of values",
+                 filtered_at(none, Eigen::MatrixXd(1, 0), two, {0.1}));
+  EXPECT_REFUSED(std::invalid_argument, "one column of values",
+                 filtered_at(two, Eigen::MatrixXd(1, 3), two, {0.1}));
 }
 
 TEST(FilteredAt, IsTheNormalisedGaussianSumAtIrregularTimes) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sparse_mocap/base/conventions.hpp"
+#include "support/refusals.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
@@ -69,9 +70,9 @@ TEST(AlignInTime, RefusesRecordingsThatHardlyOverlap) {
   const Signal a = jump(5.0, 15.0, 100.0, 1);
   Signal b = a;
   for (auto& time : b.times_s) time += 10.0;
-  EXPECT_THROW(lag_of(a, b), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "overlap by too little", lag_of(a, b));
   b.values.pop_back();
-  EXPECT_THROW(lag_of(a, b), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "one value for each time", lag_of(a, b));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "sparse_mocap/base/errors.hpp"
+#include "support/refusals.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
@@ -74,7 +75,8 @@ TEST(VirtualReadings, RefuseAnotherSkeleton) {
   std::vector<Joint> joints(1);
   joints[0].name = "root";
   motion.skeleton = Skeleton(joints);
-  EXPECT_THROW(virtual_readings(motion, all_sites()), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "not on a standard skeleton",
+                 virtual_readings(motion, all_sites()));
 }
 
 TEST(VirtualReadings, AtRestAreGravityOnTheAxesOfTheMounting) {

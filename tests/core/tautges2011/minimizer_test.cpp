@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "formats/format_test_support.hpp"
+#include "support/refusals.hpp"
 #include "tautges2011/ceres_minimizer.hpp"
 #include "tautges2011/hdm05.hpp"
 #include "tautges2011/neighbourhoods.hpp"
@@ -68,7 +69,7 @@ TEST(Minimize, NeedsAStart) {
   const Neighbourhood found = retrieved_neighbourhood(*database, random, 16);
   const Energy energy(database->skeleton(), found.weights, all_terms(*database, found, Config()));
   const PoseSubspace subspace = weighted_pca(found.angles, found.weights, 0.99);
-  EXPECT_THROW(minimize(energy, subspace, {}, 10), std::invalid_argument);
+  EXPECT_REFUSED(std::invalid_argument, "at least one start", minimize(energy, subspace, {}, 10));
 }
 
 TEST(Minimize, EndsAsLowAsCeresOnSyntheticNeighbourhoods) {

@@ -15,7 +15,7 @@ FILES = {"database.smdb", "take.csv", "take.bvh", "performed.bvh", "errors.png"}
 
 def demo(*arguments: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-m", "sparse_mocap.demo", *map(str, arguments)],
+        [sys.executable, "-m", "sparse_mocap_demo", *map(str, arguments)],
         capture_output=True,
         text=True,
         timeout=300,

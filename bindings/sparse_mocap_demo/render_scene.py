@@ -21,10 +21,11 @@ import numpy as np
 from bpy.types import Material, Mesh, Object
 from mathutils import Matrix, Vector
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
-sys.path.append(str(Path(__file__).resolve().parents[2]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 import sparse_mocap
+
 from blender_addon.scene.action import frames_of, make_action
 from blender_addon.scene.armature import new_armature
 from blender_addon.scene.compat import assign_action

@@ -9,10 +9,10 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from .. import Cancelled
-from ..capture import CaptureClient, Emulator
-from ..capture.recording import recording_to_take
-from ..take import Take
+from sparse_mocap import Cancelled
+from sparse_mocap.capture import CaptureClient, Emulator
+from sparse_mocap.capture.recording import recording_to_take
+from sparse_mocap.take import Take
 
 Progress = Callable[[int, int, str], object]
 

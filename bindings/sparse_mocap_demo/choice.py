@@ -8,9 +8,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from .. import Cancelled, FormatError, MappingError, read_motion, to_standard
-from ..evaluation import motion_files
-from ..table_errors import TableError
+from sparse_mocap import Cancelled, FormatError, MappingError, read_motion, to_standard
+from sparse_mocap.evaluation import motion_files
+from sparse_mocap.table_errors import TableError
+
 from .generator import generate_library, generate_performance
 
 Progress = Callable[[int, int, str], object]

@@ -9,8 +9,7 @@ from pathlib import Path
 import click
 import numpy as np
 from numpy.typing import NDArray
-
-from .. import (
+from sparse_mocap import (
     MotionDatabase,
     Reconstruction,
     Reconstructor,
@@ -21,8 +20,8 @@ from .. import (
     write_bvh,
     write_take,
 )
-from ..cli.console import progress_bar
-from ..evaluation import (
+from sparse_mocap.cli.console import progress_bar
+from sparse_mocap.evaluation import (
     Performance,
     frame_errors,
     interpolated,
@@ -30,10 +29,11 @@ from ..evaluation import (
     performed,
     reconstructed_positions,
 )
-from ..evaluation.metrics import CM
-from ..plots import plot_errors_over_time
-from ..reconstruction import latency_ms
-from ..take import Take
+from sparse_mocap.evaluation.metrics import CM
+from sparse_mocap.plots import plot_errors_over_time
+from sparse_mocap.reconstruction import latency_ms
+from sparse_mocap.take import Take
+
 from .blender import find_blender, render
 from .choice import Choice, generated, recorded
 from .sensors import record_emulated

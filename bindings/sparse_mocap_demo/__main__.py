@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The demonstration: simulated sensors on a motion, reconstructed and shown in Blender.
 
-``python -m sparse_mocap.demo [--database DIR] [--output DIR]``
+``python -m sparse_mocap_demo [--database DIR] [--output DIR]``
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _options(arguments)
     try:
         import click
+        from sparse_mocap.cli.faults import as_faults
 
-        from ..cli.faults import as_faults
         from .story import play
     except ImportError as error:
         print(f"demo: {error}{_remedy(error)}", file=sys.stderr)
@@ -37,7 +37,7 @@ def _remedy(error: ImportError) -> str:
 
 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="python -m sparse_mocap.demo", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m sparse_mocap_demo", description=__doc__)
     parser.add_argument(
         "--database",
         type=Path,
