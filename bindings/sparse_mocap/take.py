@@ -17,7 +17,7 @@ from .take_file import read_columns, write_columns
 Floats = NDArray[np.float64]
 Path = str | os.PathLike[str]
 
-__all__ = ["SensorRecord", "Take", "TakeError", "read_take", "resampled", "simulated", "write_take"]
+__all__ = ["SensorRecord", "Take", "TakeError", "read_take", "simulated", "write_take"]
 
 
 @dataclass(frozen=True)
@@ -103,20 +103,6 @@ def write_take(path: Path, take: Take) -> None:
         stacked([record.position for record in records]),
         take.comments,
     )
-
-
-def resampled(take: Take, rate_hz: float) -> tuple[Floats, Floats]:
-    """Returns evenly spaced times (T,) and the specific forces (T, S, 3) there, low-passed.
-
-    The same filter made the database. The times begin with the take. Sensors come in the take's
-    order; where one is silent, before its first sample, after its last or for longer than 0.1 s,
-    its reading is NaN.
-    """
-    stream = ReadingStream([SensorInput(site) for site in take.sites], rate_hz)
-    for index, record in enumerate(take.sensors.values()):
-        stream.push(index, record.times_s, record.specific_force)
-    read = stream.flush()
-    return read.times_s, read.specific_force
 
 
 def simulated(

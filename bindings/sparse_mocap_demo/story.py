@@ -12,11 +12,10 @@ from numpy.typing import NDArray
 from sparse_mocap import (
     MotionDatabase,
     Reconstruction,
-    Reconstructor,
     build_database,
     mapping_folder,
     nearest_poses,
-    resampled,
+    reconstruct,
     write_bvh,
     write_take,
 )
@@ -27,11 +26,9 @@ from sparse_mocap.evaluation import (
     interpolated,
     joint_errors,
     performed,
-    reconstructed_positions,
 )
 from sparse_mocap.evaluation.metrics import CM
 from sparse_mocap.plots import plot_errors_over_time
-from sparse_mocap.reconstruction import latency_ms
 from sparse_mocap.take import Take
 
 from .blender import find_blender, render
@@ -49,19 +46,18 @@ def play(
     output = output.resolve()
     choice = _chosen(output, database_source)
     database = _built(choice, output / "database.smdb")
-    performance = _captured(performed(choice.performance, database.rate_hz), database, output)
+    performance = _captured(performed(choice.performance), output)
     origin = f"simulated from {choice.performance.name} at 100 Hz without noise"
     take = Take(performance.take.sensors, (origin, *performance.take.comments))
     write_take(output / "take.csv", take)
-    reconstructor = Reconstructor(database, performance.take.sites)
     with progress_bar("Reconstructing") as progress:
-        solved = reconstructor.solve(performance.readings, progress=progress)
+        solved = reconstruct(take, database, use_gyroscopes=False, progress=progress)
     write_bvh(output / "take.bvh", solved.motion)
     write_bvh(output / "performed.bvh", performance.motion_on(database))
-    late = latency_ms(reconstructor, database)
+    assert solved.latency_s is not None
     click.echo(
-        f"Reconstructed {len(performance.readings)} frames from four simulated accelerometers"
-        f" without noise, online, {late:.0f} ms late"
+        f"Reconstructed {len(solved.readings)} frames from four simulated accelerometers without"
+        f" noise, in live quality, {1000.0 * solved.latency_s:.0f} ms behind"
     )
     _compare(database, performance, solved, output / "errors.png")
     _say("take", output / "take.csv")
@@ -71,15 +67,14 @@ def play(
     return _show_in_blender(output, blender) if is_blender_wanted else 0
 
 
-def _captured(performance: Performance, database: MotionDatabase, output: Path) -> Performance:
+def _captured(performance: Performance, output: Path) -> Performance:
     """Returns the performance as emulated sensors on a port were recorded."""
     with progress_bar("Recording") as progress:
         take = record_emulated(performance.take, output / "capture", progress)
     count = sum(len(record.times_s) for record in take.sensors.values())
     sent = sum(len(record.times_s) for record in performance.take.sensors.values())
     click.echo(f"Recorded {count} of {sent} samples from four emulated sensors on a port")
-    times, readings = resampled(take, database.rate_hz)
-    return replace(performance, take=take, times_s=times, readings=readings)
+    return replace(performance, take=take)
 
 
 def _chosen(output: Path, database_source: Path | None) -> Choice:
@@ -117,9 +112,11 @@ def _compare(
     """Says and draws how far the reconstruction is from the truth, and the best pose there is."""
     truth = np.asarray(performance.motion_on(database).joint_positions("heading"))
     times = np.arange(len(truth)) / database.rate_hz
-    times, truth = times[times <= performance.times_s[-1]], truth[: len(performance.times_s)]
+    estimate_times = np.asarray(solved.readings.times_s)
+    times = times[times <= estimate_times[-1]]
     truth = truth[: len(times)]
-    estimate = interpolated(performance.times_s, reconstructed_positions(solved), times)
+    positions = np.asarray(solved.motion.joint_positions("heading"))
+    estimate = interpolated(estimate_times, positions, times)
     poses = database.array("positions").reshape(database.num_frames, -1, 3)
     oracle = np.asarray(poses[nearest_poses(database, truth)], float)
     errors = CM * frame_errors(joint_errors(truth, estimate))

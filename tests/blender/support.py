@@ -96,12 +96,16 @@ def reconstruct(**options) -> bpy.types.Object:
     return bpy.context.view_layer.objects.active
 
 
-def expected_performance(preset: str = "default", offline: bool = False):
+def expected_performance(*, offline: bool = False):
     """What the core makes of the take."""
     database = addon("session.database").databases.get(str(library().database))
     take = addon("session.take").takes.get(str(library().take))
     return addon("session.reconstruct").reconstruct(
-        database, take, preset=preset, offline=offline, progress=lambda *_: True
+        database,
+        take,
+        choice=addon("session.methods").MethodChoice(),
+        best_quality=offline,
+        progress=lambda *_: True,
     )
 
 

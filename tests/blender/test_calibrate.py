@@ -88,9 +88,9 @@ def test_a_take_is_reconstructed_as_the_calibration_says(tmp_path):
     bpy.context.scene.render.fps = 25
     armature = reconstruct()
     database = sparse_mocap.MotionDatabase(library().database)
-    _, readings = sparse_mocap.resampled(ideal, database.rate_hz)
-    solver = sparse_mocap.Reconstructor(database, ideal.sites, places=[0.7] * 4)
-    wanted = in_blenders_axes(solver.solve(readings).motion.joint_positions("world"))
+    positions = dict.fromkeys(ideal.sites, 0.7)
+    solved = sparse_mocap.reconstruct(ideal, database, positions_along_bone=positions)
+    wanted = in_blenders_axes(solved.motion.joint_positions("world"))
     for index in (10, 200, 400):
         shown = evaluated_points(armature, index + 1, database.skeleton.names)
         assert np.abs(shown - wanted[index]).max() < 1e-3

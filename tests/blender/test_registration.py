@@ -50,6 +50,7 @@ def test_unregister_ends_the_job_at_work(tmp_path):
 
 def test_settings_have_defaults_in_every_scene():
     other = bpy.data.scenes.new("other")
+    assert other.sparse_mocap.method == settings().method == "path_regression"
     assert other.sparse_mocap.preset == settings().preset == "default"
     assert other.sparse_mocap.mirror
     assert not other.sparse_mocap.offline

@@ -20,9 +20,9 @@ from sparse_mocap import (
     SensorRecord,
     Take,
     build_database,
-    readings_of,
+    reconstruct,
 )
-from sparse_mocap.calibration import Calibration, Steps, apply, calibrate, positions_along_bone
+from sparse_mocap.calibration import Calibration, Steps, calibrate
 
 WORN = {
     "left_wrist": "forearm_left",
@@ -108,6 +108,18 @@ def test_boxes_turned_by_half_a_right_angle_are_found(
         assert not found.is_position_determined  # nothing stays still while running
 
 
+def since(take: Take, begin_s: float) -> Take:
+    """The take from a time on."""
+    sensors = {}
+    for name, record in take.sensors.items():
+        kept = record.times_s >= begin_s
+        assert record.angular_velocity is not None
+        sensors[name] = SensorRecord(
+            record.times_s[kept], record.specific_force[kept], record.angular_velocity[kept]
+        )
+    return Take(sensors)
+
+
 def test_limbs_point_where_the_reference_says(
     recorded: Any,
     real_data: Path,
@@ -119,22 +131,19 @@ def test_limbs_point_where_the_reference_says(
     path = tmp_path / "db.smdb"
     build_database([real_data / "hdm05", real_data / "cmu" / "bvh"], path)
     database = MotionDatabase(path)
-    worn = apply(calibration, take)
+    part = since(take, SCORED[0] - 5)
     limbs = reference(recorded)
     errors, held_still = {}, 0.0
     for uses_gyroscopes, offline in itertools.product((False, True), repeat=2):
-        readings = readings_of(
-            worn,
-            database.rate_hz,
-            places=positions_along_bone(calibration, take),
-            offline=offline,
-            uses_gyroscopes=uses_gyroscopes,
+        solved = reconstruct(
+            part,
+            database,
+            best_quality=offline,
+            calibration=calibration,
+            use_gyroscopes=uses_gyroscopes,
         )
-        part = readings.times_s >= SCORED[0] - 5
-        times = readings.times_s[part]
+        times = np.asarray(solved.readings.times_s)
         scored = times >= SCORED[0]
-        method = readings.channels.reconstructor(database)
-        solved = method.solve(readings.values[part], offline=offline)
         truth = limbs[np.round(times[scored] * 100).astype(int)]
         found = directions(solved.motion)[scored]
         errors[uses_gyroscopes, offline] = angles_deg(found, truth).mean(axis=0)

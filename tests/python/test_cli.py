@@ -213,9 +213,10 @@ def test_reconstruct_writes_motion_positions_and_report(
     on_standard, _ = standard_motion(motion, MotionDatabase(database_path).skeleton)
     np.testing.assert_allclose(on_standard.joint_positions("heading"), positions, atol=2e-4)
     assert told["sites"] == ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
-    assert told["options"]["preset"] == "default"
-    assert f"latency {told['latency_ms']:.0f} ms" in result.stdout
-    assert f"mean misfit {told['mean_misfit_mps2']:.2f}" in result.stdout
+    assert (told["format"], told["format_version"]) == ("sparse_mocap_report", 1)
+    assert told["options"]["method"] == "path_regression"
+    assert f"{told['latency_ms']:.0f} ms behind" in result.stdout
+    assert f"sensors match the motion database: {told['match']}" in result.stdout
     assert sum(told["clips"].values()) == len(times)
     assert set(told["frames"][0]) == {"time_s", "misfit_mps2", "spread_m", "clip"}
 

@@ -13,16 +13,22 @@ from sparse_mocap import (
     CHANNEL_NAMES,
     GRAVITY_MPS2,
     MotionDatabase,
-    Reconstructor,
+    Readings,
     SensorRecord,
     Take,
     gravity_directions,
     read_take,
-    readings_of,
-    resampled,
+    reconstruct,
 )
 from sparse_mocap.calibration import sensor_inputs
 from sparse_mocap.readings import all_readings, channels_in
+
+
+def readings_of(take: Take, rate_hz: float, average: str = "causal") -> Readings:
+    """All channels of a take."""
+    channels = [channels_in(record) for record in take.sensors.values()]
+    inputs = sensor_inputs(None, take.sites, channels)
+    return all_readings(take, inputs, rate_hz, gravity_average=average)
 
 
 class Oracle:
@@ -94,16 +100,17 @@ def broken_record(seed: int, begin_s: float, length_s: float) -> SensorRecord:
 def test_readings_are_those_of_the_definition() -> None:
     take = Take({"head": broken_record(1, 5.0, 6.0), "chest": broken_record(2, 6.5, 3.0)})
     for rate_hz in (25.0, 40.0):
-        readings = readings_of(take, rate_hz, offline=True)
+        readings = readings_of(take, rate_hz, "whole_take")
         num_times = int((take.end_s - take.begin_s) * rate_hz + 1e-6) + 1
         assert np.array_equal(readings.times_s, take.begin_s + np.arange(num_times) / rate_hz)
         for index, record in enumerate(take.sensors.values()):
-            for channel, values in (
-                (index, record.specific_force), (2 + index, directions_both_ways(record))
-            ):  # fmt: skip
+            for found, values in (
+                (readings.specific_force, record.specific_force),
+                (readings.gravity_direction, directions_both_ways(record)),
+            ):
                 wanted = Oracle(record.times_s, values).at(readings.times_s)
                 assert np.isnan(wanted).any()
-                np.testing.assert_allclose(readings.values[:, channel], wanted, atol=1e-9)
+                np.testing.assert_allclose(found[:, index], wanted, atol=1e-9)
 
 
 @pytest.fixture
@@ -170,36 +177,35 @@ def test_every_channel_of_a_take_is_read(take: Take) -> None:
     assert np.array_equal(read[-1].times_s, read.times_s[-1:])
 
 
-def test_without_gyroscopes_all_is_as_it_was(take: Take, database: MotionDatabase) -> None:
-    times, forces = resampled(take, database.rate_hz)
+def test_gyroscopes_that_are_absent_or_never_turn_change_nothing(
+    take: Take, database: MotionDatabase
+) -> None:
+    plain = reconstruct(take, database, use_gyroscopes=False)
+    assert plain.readings.channels == [["specific_force"]] * len(take.sensors)
     zeros = {
         site: replace(r, angular_velocity=np.zeros_like(r.specific_force))
         for site, r in take.sensors.items()
     }
     for given in (without_gyroscopes(take), Take(zeros)):
-        readings = readings_of(given, database.rate_hz)
-        assert readings.channels.has_up == [False] * len(take.sensors)
-        assert np.array_equal(readings.values, forces)
-        assert np.array_equal(readings.times_s, times)
-    plain = Reconstructor(database, take.sites).solve(forces)
-    solved = readings.channels.reconstructor(database).solve(readings.values)
-    assert np.array_equal(solved.angles, plain.angles)
+        solved = reconstruct(given, database)
+        assert solved.readings.channels == plain.readings.channels
+        assert np.array_equal(solved.readings.specific_force, plain.readings.specific_force)
+        assert np.array_equal(solved.motion.rotations, plain.motion.rotations)
 
 
-def test_forces_come_first_and_directions_are_unit_vectors(
-    take: Take, database: MotionDatabase
-) -> None:
+def test_gravity_directions_are_unit_vectors_where_there_is_a_gyroscope(take: Take) -> None:
     half = Take({**take.sensors, "left_wrist": without_gyroscopes(take).sensors["left_wrist"]})
-    readings = readings_of(half, database.rate_hz, offline=True)
-    assert readings.values.shape[1] == 2 * len(take.sensors) - 1
-    assert np.array_equal(readings.specific_force, resampled(half, database.rate_hz)[1])
-    up = readings.values[:, len(take.sensors) :]
-    assert np.linalg.norm(up, axis=2) == pytest.approx(1.0, abs=0.1)
-    at_rest = np.abs(np.linalg.norm(readings.specific_force, axis=2) - GRAVITY_MPS2) < 0.05
-    for index, channel in enumerate(range(1, len(take.sensors))):
-        quiet = at_rest[:, channel]
+    readings = readings_of(half, 25.0, "whole_take")
+    up, force = readings.gravity_direction, readings.specific_force
+    at_rest = np.abs(np.linalg.norm(force, axis=2) - GRAVITY_MPS2) < 0.05
+    for index, site in enumerate(half.sites):
+        if site == "left_wrist":
+            assert np.isnan(up[:, index]).all()
+            continue
+        assert np.linalg.norm(up[:, index], axis=1) == pytest.approx(1.0, abs=0.1)
+        quiet = at_rest[:, index]
         assert quiet.any()
-        level = readings.specific_force[quiet, channel] / GRAVITY_MPS2
+        level = force[quiet, index] / GRAVITY_MPS2
         assert np.median(np.linalg.norm(level - up[quiet, index], axis=1)) < 0.35
 
 
@@ -210,19 +216,12 @@ def test_directions_bring_the_limbs_nearer(take: Take, database: MotionDatabase)
     parents = [database.skeleton.parents[joint] for joint in joints]
     off = {}
     for uses in (False, True):
-        readings = readings_of(take, database.rate_hz, offline=True, uses_gyroscopes=uses)
-        solved = readings.channels.reconstructor(database).solve(readings.values, offline=True)
-        assert solved.sensor_misfit_mps2.shape[1] == len(take.sensors)
+        solved = reconstruct(take, database, best_quality=True, use_gyroscopes=uses)
+        assert solved.diagnostics["sensor_misfit_mps2"].shape[1] == len(take.sensors)
         positions = solved.motion.joint_positions("heading")
         bones = positions[:, joints] - positions[:, parents]
         rises = bones[:, :, 1] / np.linalg.norm(bones, axis=2)
-        index = np.round((readings.times_s - take.begin_s) * 100).astype(int)
+        index = np.round((solved.readings.times_s - take.begin_s) * 100).astype(int)
         wanted = np.stack([true_up(take, site)[index, 0] for site in take.sites], axis=1)
         off[uses] = float(np.abs(rises - wanted).mean())
     assert off[True] < off[False]
-
-
-def test_quantities_are_checked(database: MotionDatabase) -> None:
-    for wrong, words in ((["up"], "one entry a site"), (["up", "down"], "not 'down'")):
-        with pytest.raises(ValueError, match=words):
-            Reconstructor(database, ["left_wrist", "head"], quantities=wrong)

@@ -94,7 +94,7 @@ def test_an_unknown_actor_is_harder_than_a_known_one(
         path = tmp_path / f"{scenario}.json"
         result = cli(
             "evaluate", "--database-source", two_actors, "--scenario", scenario,
-            "--json", path, "--cache", tmp_path / "cache", "--preset", "default",
+            "--json", path, "--cache", tmp_path / "cache", "--method", "path_regression",
         )  # fmt: skip
         assert result.exit_code == 0, result.output
         told[scenario] = json.loads(path.read_text(encoding="utf-8"))["methods"]

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reconstruction through Python: one interface for every method, and what it promises."""
+"""Reconstruction through Python: one facade for every method, and what it promises."""
 
 from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,139 +16,230 @@ from sparse_mocap import (
     Cancelled,
     Clip,
     ConfigError,
+    LiveReconstructor,
     MotionDatabase,
-    Reconstructor,
+    Readings,
     SensorRecord,
     Take,
-    method_names,
     nearest_poses,
     nearest_windows,
     playback_best_path,
-    preset_names,
     read_take,
-    resampled,
+    reconstruct,
 )
-from sparse_mocap.reconstruction import suspicions
+from sparse_mocap.capture.sample_log import SAMPLE
+from sparse_mocap.methods import method_info, methods, option_values, renamed_preset
+from sparse_mocap.readings import SensorInput, all_readings
+from sparse_mocap.report import match_of, unit_warnings
 
-SITES = ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
+WAYS = [(m.name, best) for m in methods() for best in (False, True)
+        if m.needs == ("database",) and (m.works_on_whole_takes if best else m.works_live)]  # fmt: skip
 
 
 @pytest.fixture(scope="module")
-def readings(take_path: Path, database: MotionDatabase) -> np.ndarray:
-    return resampled(read_take(take_path), database.rate_hz)[1]
+def take(take_path: Path) -> Take:
+    return read_take(take_path)
 
 
-def test_the_papers_settings_are_a_preset_of_the_main_method() -> None:
-    assert "tautges2011" in method_names()
-    assert {"default", "paper"} <= set(preset_names("tautges2011"))
+@pytest.fixture(scope="module")
+def short(take: Take) -> Take:
+    return shortened(take, 2.5)
 
 
-@pytest.mark.parametrize("offline", [False, True])
-def test_a_take_is_solved_frame_by_frame(
-    database: MotionDatabase, readings: np.ndarray, offline: bool
+@pytest.fixture(scope="module")
+def readings(take: Take, database: MotionDatabase) -> Readings:
+    return all_readings(take, [SensorInput(site) for site in take.sites], database.rate_hz)
+
+
+def shortened(take: Take, seconds: float, sites: Sequence[str] = ()) -> Take:
+    sensors = {}
+    for site in sites or take.sites:
+        record = take.sensors[site]
+        kept = record.times_s <= take.begin_s + seconds
+        sensors[site] = SensorRecord(record.times_s[kept], record.specific_force[kept])
+    return Take(sensors)
+
+
+def test_methods_say_what_they_are() -> None:
+    assert [method.name for method in methods()][0] == "path_regression"
+    assert method_info("tautges2011").paper
+    assert not method_info("tautges2011").works_on_whole_takes
+    for method in methods():
+        assert method.options
+        assert all(option.help and option.default for option in method.options)
+    with pytest.raises(ConfigError, match="known are path_regression, tautges2011"):
+        method_info("magic")
+
+
+@pytest.mark.parametrize(
+    ("method", "preset", "expected", "told"),
+    [
+        (None, "paper", ("tautges2011", None), "--method tautges2011"),
+        ("tautges2011", "default", ("path_regression", None), "--method path_regression"),
+        ("tautges2011", "paper", ("tautges2011", "paper"), ""),
+        (None, "default", (None, "default"), ""),
+        (None, None, (None, None), ""),
+    ],
+)
+def test_presets_of_old_scripts_still_work(
+    method: str | None, preset: str | None, expected: tuple[Any, ...], told: str
 ) -> None:
-    solved = Reconstructor(database, SITES).solve(readings, offline=offline)
+    *found, message = renamed_preset(method, preset)
+    assert tuple(found) == expected
+    assert told in message
+
+
+@pytest.mark.parametrize(("method", "best_quality"), WAYS)
+def test_a_take_is_solved_frame_by_frame(
+    database: MotionDatabase, take: Take, readings: Readings, method: str, best_quality: bool
+) -> None:
+    solved = reconstruct(take, database, method=method, best_quality=best_quality)
     frames = len(readings)
     assert solved.motion.num_frames == frames
     assert solved.motion.frame_time_s == pytest.approx(1 / database.rate_hz)
     assert solved.motion.skeleton.names == database.skeleton.names
-    shapes = {
-        "angles": (43,),
-        "positions": (21, 3),
-        "contacts": (2,),
-        "spread_m": (21,),
-        "sensor_misfit_mps2": (4,),
-        "clips": (),
-        "database_frames": (),
-    }
-    for name, shape in shapes.items():
-        values = getattr(solved, name)
-        assert values.shape == (frames, *shape), name
+    assert (solved.latency_s is None) == best_quality
+    shapes = {"spread_m": 21, "sensor_misfit_mps2": 4, "clip": 1, "database_frame": 1}
+    for name, width in shapes.items():
+        values = solved.diagnostics[name]
+        assert values.shape == (frames, width), name
         assert np.isfinite(values).all(), name
-    assert ((solved.contacts >= 0) & (solved.contacts <= 1 + 1e-9)).all()
+    assert ((solved.contacts >= 0) & (solved.contacts <= 1)).all()
     clips: list[Clip] = database.clips
-    for clip, frame in zip(solved.clips.tolist(), solved.database_frames.tolist(), strict=True):
-        assert clips[clip].begin <= frame < clips[clip].end
-    positions = solved.motion.joint_positions("heading")
-    np.testing.assert_allclose(positions, solved.positions, atol=1e-5)
+    used = zip(solved.diagnostics["clip"], solved.diagnostics["database_frame"], strict=True)
+    for clip, frame in used:
+        assert clips[int(clip[0])].begin <= frame[0] < clips[int(clip[0])].end
+    np.testing.assert_array_equal(solved.readings.times_s, readings.times_s)
+    np.testing.assert_array_equal(solved.readings.specific_force, readings.specific_force)
 
 
-def test_steps_and_a_flush_are_an_online_solution(
-    database: MotionDatabase, readings: np.ndarray
-) -> None:
-    reconstructor = Reconstructor(database, SITES)
-    solved = reconstructor.solve(readings)
-    reconstructor.reset()
-    steps = [reconstructor.step(reading) for reading in readings]
-    assert [step is None for step in steps] == [
-        index < reconstructor.latency_frames for index in range(len(steps))
-    ]
-    estimates = [step for step in steps if step is not None] + reconstructor.flush()
-    assert len(estimates) == len(readings)
-    np.testing.assert_array_equal([one.angles for one in estimates], solved.angles)
-    np.testing.assert_array_equal([one.clip for one in estimates], solved.clips)
-    assert estimates[0].rotations.shape == (21, 4)
+def samples_of(take: Take) -> np.ndarray:
+    """The take as a capture would log it, in the order of time."""
+    parts = []
+    for number, record in enumerate(take.sensors.values()):
+        part = np.zeros(len(record.times_s), SAMPLE)
+        part["sensor"], part["arrival_ns"] = number, record.times_s * 1e9
+        part["device_time_s"] = record.times_s
+        part["specific_force"] = record.specific_force
+        part["angular_velocity"] = part["orientation"] = np.nan
+        parts.append(part)
+    samples = np.concatenate(parts)
+    return samples[np.argsort(samples["arrival_ns"], kind="stable")]
+
+
+def test_live_poses_are_those_of_the_whole_take(database: MotionDatabase, short: Take) -> None:
+    solved = reconstruct(short, database)
+    live = LiveReconstructor(
+        dict(enumerate(short.sites)), [["specific_force"]] * len(short.sites), database
+    )
+    samples = samples_of(short)
+    estimates = []
+    for chunk in np.array_split(samples, 37):
+        live.push(chunk)
+        estimates += live.advance(float(chunk["arrival_ns"][-1]) * 1e-9)
+    estimates += live.flush()
+    assert len(estimates) == len(solved.readings)
+    assert live.num_skipped == 0
+    np.testing.assert_allclose([one.time_s for one in estimates], solved.readings.times_s, atol=1e-3)
+    difference = np.array([one.positions for one in estimates]) - np.asarray(
+        solved.motion.joint_positions("heading")
+    )
+    assert np.linalg.norm(difference, axis=2).mean() < 2e-3  # samples are logged as floats
     np.testing.assert_allclose(
         np.linalg.norm([one.rotations for one in estimates], axis=2), 1, atol=1e-9
     )
 
 
-def test_the_same_take_gives_the_same_bits(database: MotionDatabase, readings: np.ndarray) -> None:
-    one, two = (Reconstructor(database, SITES).solve(readings[:60]) for _ in range(2))
-    np.testing.assert_array_equal(one.angles, two.angles)
-
-
-def test_silent_sensors_are_done_without(database: MotionDatabase, readings: np.ndarray) -> None:
-    partly = readings[:80].copy()
-    partly[20:45, 1] = np.nan
-    partly[50:55] = np.nan
-    solved = Reconstructor(database, SITES).solve(partly)
-    assert np.isfinite(solved.positions).all()
-
-
-@pytest.mark.parametrize("sites", [["left_wrist"], ["right_ankle", "head", "pelvis"]])
-def test_other_sets_of_sensors_work(
-    database: MotionDatabase, readings: np.ndarray, sites: list[str]
+def test_a_live_preview_that_falls_behind_uses_the_newest_reading(
+    database: MotionDatabase, short: Take
 ) -> None:
-    solved = Reconstructor(database, sites).solve(readings[:40, : len(sites)])
-    assert np.isfinite(solved.positions).all()
+    live = LiveReconstructor(
+        dict(enumerate(short.sites)),
+        [["specific_force"]] * len(short.sites),
+        database,
+        largest_backlog=5,
+    )
+    live.push(samples_of(short))
+    assert len(live.advance(short.end_s)) <= 1
+    assert live.num_skipped > 40
 
 
-def test_wrong_arguments_are_refused(database: MotionDatabase, readings: np.ndarray) -> None:
-    with pytest.raises(ConfigError, match="at least one sensor"):
-        Reconstructor(database, [])
+def test_the_same_take_gives_the_same_bits(database: MotionDatabase, short: Take) -> None:
+    one, two = (reconstruct(short, database).motion.rotations for _ in range(2))
+    np.testing.assert_array_equal(one, two)
+
+
+def test_silent_sensors_are_done_without(database: MotionDatabase, take: Take) -> None:
+    cut = {}
+    for index, (site, record) in enumerate(take.sensors.items()):
+        since = record.times_s - take.begin_s
+        is_silent = (since > 0.8) & (since < 1.8) & (index == 1) | (since > 2.0) & (since < 2.3)
+        kept = ~is_silent & (since < 3.2)
+        cut[site] = replace(
+            record,
+            times_s=record.times_s[kept],
+            specific_force=record.specific_force[kept],
+            angular_velocity=None,
+            orientation=None,
+        )
+    solved = reconstruct(Take(cut), database)
+    assert np.isnan(solved.readings.specific_force).any()
+    assert np.isfinite(solved.motion.rotations).all()
+
+
+@pytest.mark.parametrize("sites", [["left_wrist"], ["right_ankle", "left_wrist", "left_ankle"]])
+def test_other_sets_of_sensors_work(database: MotionDatabase, take: Take, sites: list[str]) -> None:
+    solved = reconstruct(shortened(take, 1.5, sites), database)
+    assert solved.readings.sites == sites
+    assert np.isfinite(solved.motion.rotations).all()
+
+
+def test_options_reach_the_method(database: MotionDatabase, short: Take) -> None:
+    plain = reconstruct(short, database)
+    few = reconstruct(short, database, options={"num_paths": 1, "use_tempo_copies": False})
+    assert few.diagnostics["spread_m"].max() < 1e-6 < plain.diagnostics["spread_m"].max()
+    assert option_values({"a": True, "b": 0.5, "c": "x"}) == {"a": "true", "b": "0.5", "c": "x"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ({"method": "magic"}, "unknown method 'magic'"),
+        ({"preset": "magic"}, "unknown preset 'magic'"),
+        ({"options": {"num_pathes": 3}}, "did you mean 'num_paths'"),
+        ({"options": {"num_paths": 0}}, "num_paths must be a whole number from 1"),
+        ({"method": "tautges2011", "best_quality": True}, "has no best quality"),
+        ({"excluded_clips": range(100_000)}, "is not in the database"),
+    ],
+)
+def test_wrong_arguments_are_refused(
+    database: MotionDatabase, short: Take, arguments: dict[str, Any], told: str
+) -> None:
+    with pytest.raises(ConfigError, match=told):
+        reconstruct(short, database, **arguments)
+
+
+def test_what_a_method_lacks_is_said(database: MotionDatabase, short: Take) -> None:
+    with pytest.raises(ConfigError, match="needs a motion database"):
+        reconstruct(short)
     with pytest.raises(ConfigError, match="unknown sensor 'nose'"):
-        Reconstructor(database, ["nose"])
-    with pytest.raises(ConfigError, match="magic"):
-        Reconstructor(database, SITES, method="magic")
-    with pytest.raises(ConfigError, match="magic"):
-        Reconstructor(database, SITES, preset="magic")
+        reconstruct(Take({"nose": short.sensors[short.sites[0]]}), database)
     with pytest.raises(ConfigError, match="every clip of the database is excluded"):
-        Reconstructor(database, SITES, excluded_clips=range(len(database.clips)))
-    with pytest.raises(ValueError, match="places"):
-        Reconstructor(database, SITES, places=[1.0])
-    reconstructor = Reconstructor(database, SITES)
-    with pytest.raises(ValueError, match=r"\(any, 4, 3\), got \(3, 3, 3\)"):
-        reconstructor.solve(readings[:3, :3])
-    with pytest.raises(ValueError, match=r"\(4, 3\), got \(3,?\)"):
-        reconstructor.step(np.zeros(3))
+        reconstruct(short, database, excluded_clips=range(len(database.clips)))
 
 
-def test_excluded_clips_are_never_leant_on(database: MotionDatabase, readings: np.ndarray) -> None:
+def test_excluded_clips_are_never_used(database: MotionDatabase, short: Take) -> None:
     excluded = [i for i, clip in enumerate(database.clips) if clip.motion_class == "walk"]
-    solved = Reconstructor(database, SITES, excluded_clips=excluded).solve(readings[:60])
-    assert not set(solved.clips.tolist()) & set(excluded)
+    solved = reconstruct(short, database, excluded_clips=excluded)
+    assert not set(solved.diagnostics["clip"][:, 0].astype(int).tolist()) & set(excluded)
 
 
-def test_a_solution_can_be_stopped(database: MotionDatabase, readings: np.ndarray) -> None:
+def test_a_solution_can_be_stopped(database: MotionDatabase, short: Take) -> None:
     with pytest.raises(Cancelled):
-        Reconstructor(database, SITES).solve(readings, progress=lambda *_: False)
+        reconstruct(short, database, progress=lambda *_: False)
 
 
-def test_other_threads_run_during_a_solution(
-    database: MotionDatabase, readings: np.ndarray
-) -> None:
-    long = np.concatenate([readings] * 3)
+def test_other_threads_run_during_a_solution(database: MotionDatabase, take: Take) -> None:
     ticks: list[float] = []
     done = threading.Event()
 
@@ -154,11 +248,10 @@ def test_other_threads_run_during_a_solution(
             ticks.append(time.monotonic())
             time.sleep(0.001)
 
-    reconstructor = Reconstructor(database, SITES)
     thread = threading.Thread(target=tick)
     thread.start()
     begin = time.monotonic()
-    reconstructor.solve(long)
+    reconstruct(take, database)
     end = time.monotonic()
     done.set()
     thread.join()
@@ -185,9 +278,9 @@ def test_the_nearest_pose_is_the_nearest(database: MotionDatabase) -> None:
     assert set(found.tolist()) <= set(shown.tolist())
 
 
-def test_the_nearest_window_is_the_nearest(database: MotionDatabase, readings: np.ndarray) -> None:
+def test_the_nearest_window_is_the_nearest(database: MotionDatabase, readings: Readings) -> None:
     force = database.array("specific_force_end")[:, :12].astype(float)
-    query = readings[:50].reshape(50, 12)
+    query = readings[:50].specific_force.reshape(50, 12)
     hidden, window = [0, 5], 4
 
     def windows(rows: np.ndarray) -> np.ndarray:
@@ -198,16 +291,16 @@ def test_the_nearest_window_is_the_nearest(database: MotionDatabase, readings: n
     frames = np.concatenate([np.arange(c.begin, c.end) for c in clips])
     features = np.concatenate([windows(force[c.begin : c.end]) for c in clips])
     distances = np.linalg.norm(windows(query)[:, None] - features[None], axis=2)
-    found = nearest_windows(database, SITES, readings[:50], window, hidden)
+    found = nearest_windows(database, readings[:50], window, hidden)
     place = {int(frame): index for index, frame in enumerate(frames)}
     got = distances[np.arange(50), [place[frame] for frame in found.tolist()]]
     np.testing.assert_allclose(got, distances.min(axis=1), atol=1e-4)
 
 
 def test_played_back_frames_are_the_databases(
-    database: MotionDatabase, readings: np.ndarray
+    database: MotionDatabase, readings: Readings
 ) -> None:
-    found = playback_best_path(database, SITES, readings, [0, 1, 2])
+    found = playback_best_path(database, readings, [0, 1, 2])
     assert len(found) == len(readings)
     hidden = database.clips[2].end
     assert ((found >= hidden) & (found < database.num_frames)).all()
@@ -230,6 +323,12 @@ def test_readings_that_can_hardly_be_are_told(force: np.ndarray, told: str) -> N
             "right_wrist": SensorRecord(times_s, sound),
         }
     )
-    (line,) = suspicions(take)
+    (line,) = unit_warnings(take)
     assert line.startswith("left_wrist")
     assert told in line
+
+
+def test_the_larger_the_misfit_the_worse_the_match() -> None:
+    assert [match_of(misfit) for misfit in (0.0, 2.4, 2.5, 4.4, 4.5, 9.0)] == [
+        "good", "good", "fair", "fair", "poor", "poor",
+    ]  # fmt: skip

@@ -13,13 +13,14 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import sparse_mocap
 from calibration_support import LEAD_S, PHASES_S, planted, wait_for_lead
 from live_support import DRIVER, OPTIONS, emulated, own_runtime, until
-from sparse_mocap.calibration import CalibrationError, worn_as
+from sparse_mocap.calibration import CalibrationError
 from sparse_mocap.calibration_file import read_calibration
 
 from blender_addon.session import calibrating, live, sensors
 from blender_addon.session.errors import InputError
 from blender_addon.session.job import Cancelled
 from blender_addon.session.live_poses import LivePoses
+from blender_addon.session.methods import MethodChoice
 
 SITES = ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
 PHASES = tuple(
@@ -108,7 +109,7 @@ def test_not_while_something_is_recorded(session, tmp_path):
 
 
 def test_live_poses_of_calibrated_sensors_are_those_of_ideal_ones(performance, tmp_path):
-    """Turning what was filtered is filtering what was turned."""
+    """Whether the samples are corrected before or in the stream does not matter."""
     take = sparse_mocap.read_take(performance[0])
     path = tmp_path / "db.smdb"
     body = Path(performance[0]).with_name("body.bvh")
@@ -120,13 +121,18 @@ def test_live_poses_of_calibrated_sensors_are_those_of_ideal_ones(performance, t
         for site, R in zip(SITES, performance[1], strict=True)
     }  # fmt: skip
     calibration = sparse_mocap.calibration.Calibration(found)
-    _, wanted = sparse_mocap.resampled(
-        sparse_mocap.calibration.apply(calibration, take), database.rate_hz
+    ideal = sparse_mocap.calibration.apply(calibration, take)
+    wanted, found = (
+        sparse_mocap.reconstruct(one, database, calibration=how, use_gyroscopes=False)
+        for one, how in ((ideal, None), (take, calibration))
     )
-    _, raw = sparse_mocap.resampled(take, database.rate_hz)
-    worn = worn_as(calibration, SITES)
-    assert np.abs([worn.ideal(row) for row in raw] - wanted).max() < 1e-9
-    poses = LivePoses(database, dict(enumerate(SITES)), "default", calibration)
+    assert np.abs(
+        found.readings.specific_force - wanted.readings.specific_force
+    ).max() < 1e-9
+    channels = [["specific_force"]] * len(SITES)
+    poses = LivePoses(
+        database, dict(enumerate(SITES)), channels, MethodChoice(), calibration
+    )
     assert poses.advance(np.empty(0, sparse_mocap.capture.sample_log.SAMPLE)) is None
     with pytest.raises(CalibrationError, match="calibrate again"):
         LivePoses(database, {0: "chest"}, "default", calibration)

@@ -15,12 +15,14 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import sparse_mocap
 from live_support import DRIVER, OPTIONS, emulated, is_alive, own_runtime, until
 from sparse_mocap.capture import CaptureClient
+from sparse_mocap.capture.sample_log import SAMPLE
 from sparse_mocap_demo.generator import generate_library
 
 from blender_addon.session import live, sensors
 from blender_addon.session.database import open_database
 from blender_addon.session.errors import InputError
-from blender_addon.session.live_poses import MOST_BEHIND, LivePoses
+from blender_addon.session.live_poses import LivePoses
+from blender_addon.session.methods import MethodChoice
 from blender_addon.session.port_scanner import PortScanner
 
 SITES = ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
@@ -64,7 +66,7 @@ def _connected(port, tmp_path, **how):
 def test_live_poses_are_those_of_the_take(made, port, tmp_path):
     database = open_database(made[0])
     session = _connected(port, tmp_path)
-    session.go_live(database, "default")
+    session.go_live(database, MethodChoice())
     poses = []
 
     def has_enough():
@@ -83,7 +85,7 @@ def test_live_poses_are_those_of_the_take(made, port, tmp_path):
     until(lambda: session.state.quality.num_poses >= 40)
     quality = session.state.quality
     assert 0.0 < quality.latency_s <= quality.worst_latency_s
-    assert 0.0 < quality.misfit_mps2 < 10.0
+    assert quality.match in ("good", "fair", "poor")
     session.leave_live()
     until(lambda: not session.state.is_live)
 
@@ -197,17 +199,16 @@ def test_one_session_at_a_time(port, tmp_path):
         _connected(port, tmp_path)
 
 
-def test_a_solver_that_is_too_slow_begins_anew(made):
-    poses = LivePoses(open_database(made[0]).motions, dict(enumerate(SITES)), "default")
-
-    class Late:
-        def add(self, samples):
-            pass
-
-        def ready(self, now_s):
-            reading = type("Reading", (), {"time_s": 0.0, "values": np.zeros((4, 3))})
-            return [reading] * (MOST_BEHIND + 1)
-
-    poses._readings = Late()
-    poses.advance(None)
-    assert poses.quality().num_skipped == MOST_BEHIND
+def test_a_preview_that_is_too_slow_uses_the_newest_reading(made):
+    channels = [["specific_force"]] * len(SITES)
+    poses = LivePoses(
+        open_database(made[0]).motions, dict(enumerate(SITES)), channels, MethodChoice()
+    )
+    seconds = 4.0
+    samples = np.zeros(int(100 * seconds) * len(SITES), SAMPLE)
+    samples["sensor"] = np.tile(np.arange(len(SITES)), len(samples) // len(SITES))
+    times_s = np.repeat(np.arange(len(samples) // len(SITES)) / 100.0, len(SITES))
+    samples["arrival_ns"] = (time.monotonic() - seconds + times_s) * 1e9
+    samples["device_time_s"], samples["specific_force"] = times_s, [0.0, 0.0, 9.81]
+    assert poses.advance(samples) is None
+    assert poses.quality().num_skipped > 80

@@ -11,7 +11,7 @@ from sparse_mocap import (
     Take,
     build_database,
     read_motion,
-    readings_of,
+    reconstruct,
     standard_motion,
 )
 
@@ -32,6 +32,6 @@ def reconstructed(
     take: Take, database: MotionDatabase, *, best_quality: bool, gyroscopes: bool
 ) -> Motion:
     """The motion that the product's own method makes of a take, live or from the whole take."""
-    readings = readings_of(take, database.rate_hz, offline=best_quality, uses_gyroscopes=gyroscopes)
-    reconstructor = readings.channels.reconstructor(database)
-    return reconstructor.solve(readings.values, offline=best_quality).motion
+    return reconstruct(
+        take, database, best_quality=best_quality, use_gyroscopes=gyroscopes
+    ).motion

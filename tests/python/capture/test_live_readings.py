@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 from capture_support import some_take
-from sparse_mocap import FILTER_REACH_S, filtered_at, gravity_directions
-from sparse_mocap.capture.live_readings import LiveReadings
+from sparse_mocap import (
+    FILTER_REACH_S,
+    ReadingStream,
+    SensorInput,
+    filtered_at,
+    gravity_directions,
+)
 from sparse_mocap.capture.sample_log import SAMPLE
+from sparse_mocap.readings import push_samples
 
 START_S = 100.0
 LONGEST_WAIT_S = 0.1
@@ -32,26 +36,28 @@ def streamed(silent_s: tuple[float, float] = (0.0, 0.0), has_clock: bool = True)
     return samples[np.argsort(samples["arrival_ns"], kind="stable")]
 
 
-def played(samples: np.ndarray, step_s: float, **how: Any) -> tuple[np.ndarray, np.ndarray, float]:
-    live = LiveReadings([0, 1], 25.0, **how)
-    readings, late_s = [], 0.0
+def played(
+    samples: np.ndarray, step_s: float, inputs: list[SensorInput] | None = None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """Returns times, specific forces, gravity directions, and how late the latest reading was."""
+    sensors = inputs or [SensorInput("left_wrist"), SensorInput("right_wrist")]
+    stream = ReadingStream(sensors, 25.0)
+    times, forces, directions, late_s = [], [], [], 0.0
     for now_s in np.arange(START_S, START_S + 4.0, step_s):
         arrived = samples["arrival_ns"] * 1e-9
-        live.add(samples[(arrived > now_s - step_s) & (arrived <= now_s)])
-        for reading in live.ready(now_s):
-            readings.append(reading)
-            late_s = max(late_s, now_s - reading.time_s)
-    return (
-        np.array([reading.time_s for reading in readings]),
-        np.array([reading.values for reading in readings]),
-        late_s,
-    )
+        push_samples(stream, [0, 1], samples[(arrived > now_s - step_s) & (arrived <= now_s)])
+        ready = stream.ready(now_s)
+        times += ready.times_s.tolist()
+        forces += list(ready.specific_force)
+        directions += list(ready.gravity_direction)
+        late_s = max([late_s, *(now_s - ready.times_s).tolist()])
+    return np.array(times), np.array(forces), np.array(directions), late_s
 
 
 @pytest.mark.parametrize("step_s", [0.01, 0.07])
 @pytest.mark.parametrize("has_clock", [True, False])
 def test_they_are_what_the_whole_take_gives(step_s: float, has_clock: bool) -> None:
-    times, forces, late_s = played(streamed(has_clock=has_clock), step_s)
+    times, forces, _, late_s = played(streamed(has_clock=has_clock), step_s)
     assert len(times) > 90
     assert np.diff(times) == pytest.approx(1 / 25)
     for index, record in enumerate(some_take(4.0, 2).sensors.values()):
@@ -66,21 +72,25 @@ def test_directions_are_those_of_the_whole_take() -> None:
     samples = streamed()
     first = samples["sensor"] == 0
     samples["angular_velocity"][first] += bias[0].astype(np.float32)
-    times, values, _ = played(samples, 0.01, has_up=[True, False], gyroscope_biases=bias)
-    assert values.shape[1:] == (3, 3)
+    inputs = [
+        SensorInput("left_wrist", ["specific_force", "gravity_direction"], gyroscope_bias=bias[0]),
+        SensorInput("right_wrist", ["specific_force"]),
+    ]
+    times, _, directions, _ = played(samples, 0.01, inputs)
+    assert np.isnan(directions[:, 1]).all()
     record = some_take(4.0, 2).sensors["left_wrist"]
     assert record.angular_velocity is not None
     up = gravity_directions(record.times_s, record.specific_force, record.angular_velocity)
     is_sure = np.isfinite(up).all(axis=1)
     whole = filtered_at(START_S + record.times_s[is_sure], up[is_sure], times)
-    known = np.isfinite(values[:, 2]).all(axis=1)
+    known = np.isfinite(directions[:, 0]).all(axis=1)
     assert not known[times < START_S + 0.3].any()
     assert known[times > START_S + 1.0].all()
-    assert values[known, 2] == pytest.approx(whole[known], abs=2e-3)
+    assert directions[known, 0] == pytest.approx(whole[known], abs=2e-3)
 
 
 def test_a_silent_sensor_is_waited_for_and_then_left_out() -> None:
-    times, forces, late_s = played(streamed(silent_s=(1.5, 2.5)), 0.01)
+    times, forces, _, late_s = played(streamed(silent_s=(1.5, 2.5)), 0.01)
     is_silent = np.isnan(forces[:, 1]).all(axis=1)
     silent_s = times[is_silent] - START_S
     assert 1.5 < silent_s.min() < 1.75

@@ -202,7 +202,7 @@ def test_live_streams_poses(
                    "--positions", tmp_path / "live.csv", "--seconds", 3)  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert "poses" in done.stdout
-    assert "misfit" in done.stdout
+    assert "sensors match the motion database" in done.stdout
     times, joints, positions = read_positions(tmp_path / "live.csv")
     assert len(joints) == 21
     assert 30 < len(times) < 110
