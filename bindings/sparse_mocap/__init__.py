@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib
 import sys
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
         ClockModel,
         ConfigError,
         FormatError,
-        HumanoidMapping,
         InclinationFilter,
         MappingError,
         Motion,
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
         Reconstructor,
         Resampler,
         Skeleton,
+        SkeletonMapping,
         SourceSkeleton,
         StreamEncoder,
         StreamParser,
@@ -50,7 +51,7 @@ if TYPE_CHECKING:
         guided_movements,
         inclinations,
         keep_alive_commands,
-        map_humanoid,
+        map_skeleton,
         method_names,
         nearest_poses,
         nearest_windows,
@@ -88,7 +89,6 @@ __all__ = [
     "ClockModel",
     "ConfigError",
     "FormatError",
-    "HumanoidMapping",
     "InclinationFilter",
     "MappingError",
     "Motion",
@@ -103,6 +103,7 @@ __all__ = [
     "SensorCalibration",
     "SensorRecord",
     "Skeleton",
+    "SkeletonMapping",
     "SourceSkeleton",
     "Steps",
     "StreamEncoder",
@@ -126,7 +127,7 @@ __all__ = [
     "guided_movements",
     "inclinations",
     "keep_alive_commands",
-    "map_humanoid",
+    "map_skeleton",
     "mapping_folder",
     "method_names",
     "nearest_poses",
@@ -178,8 +179,18 @@ _PYTHON_HOMES = {
     ),
 }
 
+_RENAMED = {"HumanoidMapping": "SkeletonMapping", "map_humanoid": "map_skeleton"}
+"""Names of the release before, and what they are called now."""
+
 
 def __getattr__(name: str) -> Any:
+    if new_name := _RENAMED.get(name):
+        warnings.warn(
+            f"sparse_mocap.{name} will go: write sparse_mocap.{new_name}",
+            DeprecationWarning,
+            stacklevel=2,
+        )
+        return getattr(sys.modules[__name__], new_name)
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     home = _PYTHON_HOMES.get(name)

@@ -9,6 +9,7 @@ from ._core_calibration import *
 from ._core_database import *
 from ._core_motion import *
 from ._core_reconstruction import *
+from ._core_retargeting import *
 from ._core_sensors import *
 from ._core_streams import *
 

@@ -21,7 +21,7 @@ namespace py = pybind11;
 // One function a file, each binds one concept.
 void bind_errors(py::module_& m);
 void bind_motion(py::module_& m);
-void bind_humanoid(py::module_& m);
+void bind_retargeting(py::module_& m);
 void bind_sensors(py::module_& m);
 void bind_streams(py::module_& m);
 void bind_calibration(py::module_& m);

@@ -9,7 +9,7 @@ PYBIND11_MODULE(_core, m) {
   m.attr("GRAVITY_MPS2") = kGravity_mps2;
   python::bind_errors(m);
   python::bind_motion(m);
-  python::bind_humanoid(m);
+  python::bind_retargeting(m);
   python::bind_sensors(m);
   python::bind_streams(m);
   python::bind_calibration(m);

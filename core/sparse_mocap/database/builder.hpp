@@ -8,7 +8,7 @@
 
 #include "sparse_mocap/base/progress.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
-#include "sparse_mocap/motion/humanoid_file.hpp"
+#include "sparse_mocap/formats/mapping_file.hpp"
 
 namespace sparse_mocap {
 
