@@ -39,9 +39,7 @@ if TYPE_CHECKING:
         StreamEncoder,
         StreamParser,
         __version__,
-        add_to_database,
         align_in_time,
-        build_database,
         calibrate_sensor,
         driver_names,
         driver_options,
@@ -72,6 +70,7 @@ if TYPE_CHECKING:
     from .alignment import aligned
     from .calibration import Calibration, SensorCalibration, Steps, assign_by_shaking, calibrate
     from .calibration_file import read_calibration, write_calibration
+    from .databases import add_to_database, build_database
     from .mappings import forget_mapping, mapping_folder, remember_mapping, to_standard
     from .noise import NoiseModel, noise_presets, noisy
     from .positions import read_positions, write_positions
@@ -166,6 +165,7 @@ _PYTHON_HOMES = {
         ("forget_mapping", "mapping_folder", "remember_mapping", "to_standard"), ".mappings"
     ),
     "aligned": ".alignment",
+    **dict.fromkeys(("add_to_database", "build_database"), ".databases"),
     **dict.fromkeys(
         ("Calibration", "SensorCalibration", "Steps", "assign_by_shaking", "calibrate"),
         ".calibration",
