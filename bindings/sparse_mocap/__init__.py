@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib
 import sys
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
         ClockModel,
         ConfigError,
         FormatError,
-        HumanoidMapping,
         MappingError,
         Model,
         Motion,
@@ -39,15 +39,14 @@ if TYPE_CHECKING:
         SensorInput,
         SensorRecording,
         Skeleton,
+        SkeletonMapping,
         SourceSkeleton,
         StreamEncoder,
         StreamParser,
         TrainingClip,
         __version__,
-        add_to_database,
         align_in_time,
         body_of_height,
-        build_database,
         calibrate_sensor,
         channels_of,
         driver_names,
@@ -59,7 +58,7 @@ if TYPE_CHECKING:
         guided_movements,
         host_times,
         keep_alive_commands,
-        map_humanoid,
+        map_skeleton,
         nearest_poses,
         nearest_windows,
         playback_best_path,
@@ -85,6 +84,7 @@ if TYPE_CHECKING:
     from .body_file import body_of_motion, read_body, write_body
     from .calibration import Calibration, SensorCalibration, Steps, assign_by_shaking, calibrate
     from .calibration_file import read_calibration, write_calibration
+    from .databases import add_to_database, build_database
     from .mappings import forget_mapping, mapping_folder, remember_mapping, to_standard
     from .noise import NoiseModel, noise_presets, noisy
     from .positions import read_positions, write_positions
@@ -106,7 +106,6 @@ __all__ = [
     "ClockModel",
     "ConfigError",
     "FormatError",
-    "HumanoidMapping",
     "LiveReconstructor",
     "MappingError",
     "MethodInfo",
@@ -125,6 +124,7 @@ __all__ = [
     "SensorRecord",
     "SensorRecording",
     "Skeleton",
+    "SkeletonMapping",
     "SourceSkeleton",
     "Steps",
     "StreamEncoder",
@@ -153,7 +153,7 @@ __all__ = [
     "guided_movements",
     "host_times",
     "keep_alive_commands",
-    "map_humanoid",
+    "map_skeleton",
     "mapping_folder",
     "method_info",
     "nearest_poses",
@@ -199,6 +199,7 @@ _PYTHON_HOMES = {
     ),
     "aligned": ".alignment",
     **dict.fromkeys(("body_of_motion", "read_body", "write_body"), ".body_file"),
+    **dict.fromkeys(("add_to_database", "build_database"), ".databases"),
     **dict.fromkeys(
         ("Calibration", "SensorCalibration", "Steps", "assign_by_shaking", "calibrate"),
         ".calibration",
@@ -213,8 +214,18 @@ _PYTHON_HOMES = {
     ),
 }
 
+_RENAMED = {"HumanoidMapping": "SkeletonMapping", "map_humanoid": "map_skeleton"}
+"""Names of the release before, and what they are called now."""
+
 
 def __getattr__(name: str) -> Any:
+    if new_name := _RENAMED.get(name):
+        warnings.warn(
+            f"sparse_mocap.{name} will go: write sparse_mocap.{new_name}",
+            DeprecationWarning,
+            stacklevel=2,
+        )
+        return getattr(sys.modules[__name__], new_name)
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     home = _PYTHON_HOMES.get(name)

@@ -12,6 +12,7 @@ from ._core_model import *
 from ._core_motion import *
 from ._core_readings import *
 from ._core_reconstruction import *
+from ._core_retargeting import *
 from ._core_sensors import *
 from ._core_streams import *
 

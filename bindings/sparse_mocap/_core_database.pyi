@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The compiled core: motion databases."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TypedDict, Unpack
 
 import numpy as np
@@ -85,6 +85,11 @@ def find_motion_files(sources: Sequence[Path], exclude: Sequence[str] = ()) -> l
     Raises FormatError when a source does not exist or nothing is left.
     """
 
+def named_motion_files(
+    sources: Sequence[Path], exclude: Sequence[str] = ()
+) -> list[tuple[Path, str]]:
+    """As find_motion_files, each with the name that its clips have as their source."""
+
 class ProgressReport:
     """How far an import is: done of total steps.
 
@@ -122,19 +127,14 @@ class BuildReport:
     warnings: list[str]
 
 class _ImportOptions(TypedDict, total=False):
-    """Of build_database and add_to_database; no class at run time.
+    """Of sparse_mocap.build_database and add_to_database, which say what they mean.
 
-    num_threads: 0, the default, is one a processor; the file is the same. metadata: a table
-    file,actor,class,source,license; by default metadata.csv of the source folders. by_hand: the
-    joints of skeletons that have them all; mappings: a folder that remembers those of others.
-    details hears each report before progress does.
+    No class at run time.
     """
 
-    exclude: Sequence[str]
     strict: bool
     keep_duplicates: bool
     num_threads: int
-    metadata: Path | None
     by_hand: dict[str, str]
     mappings: Path | None
     progress: ProgressCallback | None
@@ -148,20 +148,24 @@ def build_database(
     mirror: bool = False,
     reverse: bool = False,
     tempo_copies: Sequence[float] = (0.8, 1.25),
+    exclude: Sequence[str] = (),
+    labels: Mapping[str, tuple[str, str, str, str]] = ...,
+    label_warnings: Sequence[str] = (),
     **options: Unpack[_ImportOptions],
 ) -> BuildReport:
-    """Builds a database from motion files and folders of them."""
+    """Builds a database; labels are actor, class, origin and license by a motion file's path."""
 
 def add_to_database(
     database: Path,
     sources: Sequence[Path],
     output: Path | None = None,
+    *,
+    exclude: Sequence[str] = (),
+    labels: Mapping[str, tuple[str, str, str, str]] = ...,
+    label_warnings: Sequence[str] = (),
     **options: Unpack[_ImportOptions],
 ) -> BuildReport:
-    """Adds motion files on the database's skeleton, at its rate, with its kinds of copies.
-
-    Replaces the database (atomically) when output is None. Files that are in are not read again.
-    """
+    """Adds motion files to a database; labels as above."""
 
 def drop_from_database(database: Path, clips: Sequence[str], output: Path | None = None) -> int:
     """Drops clips by glob patterns on name or source, and tells how many. Raises FormatError."""

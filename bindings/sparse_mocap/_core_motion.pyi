@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The compiled core: skeletons, motions, other skeletons on the standard one."""
-
-import os
+"""The compiled core: skeletons, motions and their files."""
 
 from numpy.typing import ArrayLike
 
@@ -74,52 +72,3 @@ def write_acclaim(path: Path, motion: Motion) -> None:
 
     Offsets of joints become fixed bones. Raises FormatError for what Acclaim cannot hold.
     """
-
-class HumanoidMapping:
-    """How a foreign skeleton carries the standard one of 21 joints."""
-
-    @property
-    def joints(self) -> dict[str, str]:
-        """The skeleton's joint for each standard one that it has."""
-    @property
-    def is_by_names(self) -> bool:
-        """False where limbs were recognised by their shape."""
-    @property
-    def unit_scale(self) -> float:
-        """The file's lengths times this are metres."""
-    @property
-    def R_world_file(self) -> Floats:
-        """(3, 3) turns the file's world into one with y up."""
-    @property
-    def warnings(self) -> list[str]: ...
-    def to_standard(
-        self, motion: Motion, skeleton: Skeleton | None = None
-    ) -> tuple[Motion, list[str]]:
-        """The motion on a standard skeleton (of its own proportions when None), and warnings."""
-    def limb_errors_rad(self, motion: Motion, standard: Motion) -> dict[str, tuple[float, float]]:
-        """Mean and worst angle between each limb of a motion and of what to_standard made of it."""
-
-def map_humanoid(motion: Motion, by_hand: dict[str, str] = ...) -> HumanoidMapping:
-    """Finds the body in a motion's skeleton and matches the rest poses.
-
-    by_hand: the skeleton's joint for some standard ones; the others are found by their names, then
-    by their shape. Raises MappingError.
-    """
-
-def standard_motion(
-    motion: Motion, skeleton: Skeleton | None = None, by_hand: dict[str, str] = ...
-) -> tuple[Motion, list[str]]:
-    """map_humanoid and to_standard in one. Raises MappingError."""
-
-def standard_joint_names() -> list[str]: ...
-def read_mapping(path: Path) -> dict[str, str]:
-    """A mapping by hand, from standard joints to a skeleton's. Raises FormatError."""
-
-def write_mapping(path: Path, joints: dict[str, str]) -> None:
-    """Writes a mapping by hand atomically."""
-
-def remembered_mapping(folder: Path, skeleton: Skeleton) -> dict[str, str]:
-    """The mapping by hand that a folder keeps for a skeleton, empty when there is none."""
-
-def remembered_mapping_path(folder: Path, skeleton: Skeleton) -> str | os.PathLike[str]:
-    """Where the folder keeps it."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ._core import FormatError, HumanoidMapping, MappingError, Motion, read_motion
+from ._core import FormatError, MappingError, Motion, SkeletonMapping, read_motion
 from .mappings import find_mapping
 
 
@@ -20,7 +20,7 @@ class Inspection:
     path: Path
     refusal: str | None = None
     motion: Motion | None = None
-    mapping: HumanoidMapping | None = None
+    mapping: SkeletonMapping | None = None
     standard: Motion | None = None
     """The motion on the standard skeleton, with the file's own proportions."""
     is_by_hand: bool = False

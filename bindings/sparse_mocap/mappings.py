@@ -13,10 +13,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ._core import (
-    HumanoidMapping,
     Motion,
     Skeleton,
-    map_humanoid,
+    SkeletonMapping,
+    map_skeleton,
     remembered_mapping,
     remembered_mapping_path,
     write_mapping,
@@ -54,17 +54,17 @@ def forget_mapping(skeleton: Skeleton) -> bool:
 
 def find_mapping(
     motion: Motion, by_hand: Mapping[str, str] | None = None
-) -> tuple[HumanoidMapping, list[str]]:
+) -> tuple[SkeletonMapping, list[str]]:
     """The mapping of a motion: by hand if given, else the remembered one, else detected.
 
     Also returns a note if a remembered mapping is used. Raises MappingError.
     """
     if by_hand is not None:
-        return map_humanoid(motion, dict(by_hand)), []
+        return map_skeleton(motion, dict(by_hand)), []
     remembered = remembered_mapping(mapping_folder(), motion.skeleton)
     path = remembered_mapping_path(mapping_folder(), motion.skeleton)
     notes = [f"using the mapping remembered in {path}"] if remembered else []
-    return map_humanoid(motion, remembered), notes
+    return map_skeleton(motion, remembered), notes
 
 
 def to_standard(

@@ -17,7 +17,7 @@ namespace sparse_mocap::python {
 void bind_errors(py::module_& m);
 void bind_motion(py::module_& m);
 void bind_body(py::module_& m);
-void bind_humanoid(py::module_& m);
+void bind_retargeting(py::module_& m);
 void bind_sensors(py::module_& m);
 void bind_streams(py::module_& m);
 void bind_calibration(py::module_& m);

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <map>
+
 #include "common.hpp"
 #include "sparse_mocap/database/builder.hpp"
 #include "sparse_mocap/database/source_files.hpp"
@@ -9,19 +12,31 @@ namespace {
 namespace fs = std::filesystem;
 using Paths = std::vector<fs::path>;
 using Callback = std::optional<py::function>;
+using Labels = std::map<fs::path, std::array<std::string, 4>>;  // actor, class, origin, license
 
 ImportOptions import_options(const std::vector<std::string>& exclude, bool strict,
-                             bool keep_duplicates, int num_threads,
-                             const std::optional<fs::path>& metadata, const JointNames& by_hand,
-                             const std::optional<fs::path>& mappings) {
+                             bool keep_duplicates, int num_threads, const Labels& labels,
+                             const std::vector<std::string>& label_warnings,
+                             const JointNames& by_hand, const std::optional<fs::path>& mappings) {
   ImportOptions options;
   options.exclude = exclude;
   options.is_strict = strict;
   options.keep_duplicates = keep_duplicates;
   options.num_threads = num_threads;
-  options.metadata = metadata.value_or(fs::path());
+  for (const auto& [path, said] : labels)
+    options.labels[path] = {said[0], said[1], said[2], said[3]};
+  options.label_warnings = label_warnings;
   options.mapping = {by_hand, mappings.value_or(fs::path())};
   return options;
+}
+
+// Each with its name in a database.
+std::vector<std::pair<fs::path, py::str>> named_motion_files(
+    const Paths& sources, const std::vector<std::string>& exclude) {
+  std::vector<std::pair<fs::path, py::str>> named;
+  for (const auto& file : find_source_files(sources, exclude))
+    named.emplace_back(file.path, text_of(file.name));
+  return named;
 }
 
 Paths motion_files(const Paths& sources, const std::vector<std::string>& exclude) {
@@ -34,11 +49,12 @@ Paths motion_files(const Paths& sources, const std::vector<std::string>& exclude
 BuildReport build(const Paths& sources, const fs::path& output, double rate_hz, bool mirror,
                   bool reverse, const std::vector<double>& tempo_copies,
                   const std::vector<std::string>& exclude, bool strict, bool keep_duplicates,
-                  int num_threads, const std::optional<fs::path>& metadata,
-                  const JointNames& by_hand, const std::optional<fs::path>& mappings,
-                  const Callback& callback, const Callback& details) {
-  BuildOptions options{
-      import_options(exclude, strict, keep_duplicates, num_threads, metadata, by_hand, mappings)};
+                  int num_threads, const Labels& labels,
+                  const std::vector<std::string>& label_warnings, const JointNames& by_hand,
+                  const std::optional<fs::path>& mappings, const Callback& callback,
+                  const Callback& details) {
+  BuildOptions options{import_options(exclude, strict, keep_duplicates, num_threads, labels,
+                                      label_warnings, by_hand, mappings)};
   options.rate_hz = rate_hz;
   options.add_mirrored = mirror;
   options.add_reversed = reverse;
@@ -50,12 +66,12 @@ BuildReport build(const Paths& sources, const fs::path& output, double rate_hz, 
 
 BuildReport add(const fs::path& database, const Paths& sources,
                 const std::optional<fs::path>& output, const std::vector<std::string>& exclude,
-                bool strict, bool keep_duplicates, int num_threads,
-                const std::optional<fs::path>& metadata, const JointNames& by_hand,
+                bool strict, bool keep_duplicates, int num_threads, const Labels& labels,
+                const std::vector<std::string>& label_warnings, const JointNames& by_hand,
                 const std::optional<fs::path>& mappings, const Callback& callback,
                 const Callback& details) {
-  const ImportOptions options =
-      import_options(exclude, strict, keep_duplicates, num_threads, metadata, by_hand, mappings);
+  const ImportOptions options = import_options(exclude, strict, keep_duplicates, num_threads,
+                                               labels, label_warnings, by_hand, mappings);
   const Progress progress = progress_from(callback, details);
   const py::gil_scoped_release release;
   return add_to_database(database, sources, output.value_or(database), options, progress);
@@ -113,19 +129,21 @@ void bind_database_import(py::module_& m) {
   bind_reports(m);
   const std::vector<std::string> no_patterns;
   m.def("find_motion_files", &motion_files, py::arg("sources"), py::arg("exclude") = no_patterns);
+  m.def("named_motion_files", &named_motion_files, py::arg("sources"),
+        py::arg("exclude") = no_patterns);
   m.def("build_database", &build, py::arg("sources"), py::arg("output"), py::kw_only(),
         py::arg("rate_hz") = 25.0, py::arg("mirror") = false, py::arg("reverse") = false,
         py::arg("tempo_copies") = BuildOptions().tempo_copies, py::arg("exclude") = no_patterns,
         py::arg("strict") = false, py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
-        py::arg("metadata") = py::none(), py::arg("by_hand") = JointNames(),
-        py::arg("mappings") = py::none(), py::arg("progress") = py::none(),
-        py::arg("details") = py::none());
+        py::arg("labels") = Labels(), py::arg("label_warnings") = no_patterns,
+        py::arg("by_hand") = JointNames(), py::arg("mappings") = py::none(),
+        py::arg("progress") = py::none(), py::arg("details") = py::none());
   m.def("add_to_database", &add, py::arg("database"), py::arg("sources"),
         py::arg("output") = py::none(), py::kw_only(), py::arg("exclude") = no_patterns,
         py::arg("strict") = false, py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
-        py::arg("metadata") = py::none(), py::arg("by_hand") = JointNames(),
-        py::arg("mappings") = py::none(), py::arg("progress") = py::none(),
-        py::arg("details") = py::none());
+        py::arg("labels") = Labels(), py::arg("label_warnings") = no_patterns,
+        py::arg("by_hand") = JointNames(), py::arg("mappings") = py::none(),
+        py::arg("progress") = py::none(), py::arg("details") = py::none());
   m.def("drop_from_database", &drop, py::arg("database"), py::arg("clips"),
         py::arg("output") = py::none());
 }

@@ -4,7 +4,7 @@
 #include <pybind11/gil_safe_call_once.h>
 
 #include "common.hpp"
-#include "sparse_mocap/motion/humanoid.hpp"
+#include "sparse_mocap/retargeting/mapping_error.hpp"
 
 namespace sparse_mocap::python {
 namespace {

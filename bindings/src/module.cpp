@@ -10,7 +10,7 @@ PYBIND11_MODULE(_core, m) {
   python::bind_errors(m);
   python::bind_motion(m);
   python::bind_body(m);
-  python::bind_humanoid(m);
+  python::bind_retargeting(m);
   python::bind_sensors(m);
   python::bind_streams(m);
   python::bind_calibration(m);

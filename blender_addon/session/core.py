@@ -13,6 +13,7 @@ VENDOR = Path(__file__).resolve().parents[1] / "vendor"
 MODULES = (
     "sparse_mocap._core",
     "sparse_mocap.calibration_file",
+    "sparse_mocap.databases",
     "sparse_mocap.mappings",
     "sparse_mocap.methods",
     "sparse_mocap.readings",

@@ -141,7 +141,7 @@ def test_a_bad_table_is_one_line_that_says_where(cli: Cli, parts: Path) -> None:
     result = cli("database", "build", parts / "ada", "-o", parts / "db.smdb")
     assert result.exit_code == 1
     (line,) = result.stderr.splitlines()
-    assert 'metadata.csv:1:6: unknown column "licence"; did you mean "license"?' in line
+    assert 'metadata.csv:1: unknown column "licence"; did you mean "license"?' in line
     assert not (parts / "db.smdb").exists()
 
 

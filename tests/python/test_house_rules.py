@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The repository's own rules: licence lines, and files and functions that a reader can hold."""
+"""The repository's own rules: licence lines, files and functions that a reader can hold, modules
+that use only those below them."""
 
 from __future__ import annotations
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -13,6 +15,23 @@ ROOMS = ("core", "bindings", "blender_addon", "tests")
 MOST_LINES = 400
 MOST_FUNCTION_LINES = 50
 LICENCE = "SPDX-License-Identifier: GPL-3.0-or-later"
+
+MODULES = (
+    ("base",),
+    ("motion",),
+    ("retargeting",),
+    ("formats",),
+    ("sensors",),
+    ("readings",),
+    ("streams",),
+    ("database",),
+    ("reconstruction",),
+    ("retrieval",),
+    ("tautges2011", "path_regression"),
+    ("methods",),
+)
+"""The modules of the core, lowest first; those of one level do not know each other."""
+ONLY_BASE = ("streams",)
 
 
 def sources(*endings: str) -> list[Path]:
@@ -46,3 +65,31 @@ def test_no_python_function_is_too_long(room: str) -> None:
                 if lines > MOST_FUNCTION_LINES:
                     long[f"{path.relative_to(ROOT)}:{node.lineno} {node.name}"] = lines
     assert long == {}
+
+
+def core_includes() -> dict[tuple[str, str], list[str]]:
+    """The files of the core by which module includes which."""
+    found: dict[tuple[str, str], list[str]] = {}
+    folder = ROOT / "core" / "sparse_mocap"
+    for path in sorted([*folder.rglob("*.hpp"), *folder.rglob("*.cpp")]):
+        module = path.relative_to(folder).parts[0]
+        for used in re.findall(
+            r'^\s*#\s*include\s*["<]sparse_mocap/([^/"<>]+)/', path.read_text(), re.MULTILINE
+        ):
+            found.setdefault((module, used), []).append(str(path.relative_to(folder)))
+    return found
+
+
+def test_no_module_of_the_core_includes_a_higher_one() -> None:
+    level = {module: i for i, modules in enumerate(MODULES) for module in modules}
+    includes = core_includes()
+    assert len(includes) > 20
+    unknown = {module for pair in includes for module in pair} - set(level)
+    assert unknown == set(), "a new module of the core belongs into MODULES"
+    wrong = {
+        pair: files
+        for pair, files in includes.items()
+        if pair[0] != pair[1]
+        and (level[pair[1]] >= level[pair[0]] or (pair[0] in ONLY_BASE and pair[1] != "base"))
+    }
+    assert wrong == {}

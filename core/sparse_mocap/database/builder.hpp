@@ -3,14 +3,20 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "sparse_mocap/base/progress.hpp"
+#include "sparse_mocap/formats/mapping_file.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
-#include "sparse_mocap/motion/humanoid_file.hpp"
 
 namespace sparse_mocap {
+
+// What people say of a motion file and its name does not; what is empty is not said.
+struct FileLabels {
+  std::string actor, motion_class, origin, license;
+};
 
 // How files get into a database.
 struct ImportOptions {
@@ -18,9 +24,9 @@ struct ImportOptions {
   bool is_strict = false;            // stop at the first file that cannot be used
   bool keep_duplicates = false;      // also take files whose motion is there already
   int num_threads = 0;               // 0: one a processor; the result is the same
-  // A table of labels (see Sidecar); empty: `metadata.csv` in the source folders that have one.
-  std::filesystem::path metadata;
-  MappingChoice mapping;  // what was said about bodies by hand
+  std::map<std::filesystem::path, FileLabels> labels;  // by the paths of find_source_files
+  std::vector<std::string> label_warnings;             // one line each, for the report
+  MappingChoice mapping;                               // written by hand
   ReadOptions read;
 };
 

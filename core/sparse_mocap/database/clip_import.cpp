@@ -8,8 +8,8 @@
 
 #include "sparse_mocap/base/checksum.hpp"
 #include "sparse_mocap/database/clip_names.hpp"
-#include "sparse_mocap/motion/humanoid.hpp"
-#include "sparse_mocap/motion/humanoid_file.hpp"
+#include "sparse_mocap/retargeting/mapping_error.hpp"
+#include "sparse_mocap/retargeting/to_standard.hpp"
 
 namespace sparse_mocap {
 namespace {
@@ -45,11 +45,11 @@ MotionFile read_with_frames(const SourceFile& file, const ReadOptions& options) 
   return read;
 }
 
-SourceSkeleton described(const Skeleton& source, const HumanoidMapping& mapping) {
+SourceSkeleton described(const Skeleton& source, const SkeletonMapping& mapping) {
   SourceSkeleton skeleton;
   skeleton.num_joints = source.num_joints();
   skeleton.unit_scale = mapping.unit_scale;
-  skeleton.joints = joint_names(source, mapping);
+  skeleton.joints = mapped_joint_names(source, mapping);
   std::string identity = std::to_string(mapping.unit_scale);
   for (const Joint& joint : source.joints())
     identity.append("\n").append(joint.name).append(" ").append(std::to_string(joint.parent));
@@ -142,7 +142,7 @@ Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& ha
     ImportedFile out;
     const MotionFile read = read_with_frames(file, options);
     stop_if_asked(stop);
-    const HumanoidMapping mapping = map_as_chosen(read.motion, choice);
+    const SkeletonMapping mapping = map_as_chosen(read.motion, choice);
     std::vector<std::string> texts = mapping.warnings;
     const Motion motion = to_standard(read.motion, mapping, standard, &texts);
     out.skeleton = described(read.motion.skeleton, mapping);

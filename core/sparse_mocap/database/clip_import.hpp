@@ -12,8 +12,8 @@
 #include "sparse_mocap/database/clip.hpp"
 #include "sparse_mocap/database/database_rows.hpp"
 #include "sparse_mocap/database/source_files.hpp"
+#include "sparse_mocap/formats/mapping_file.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
-#include "sparse_mocap/motion/humanoid_file.hpp"
 #include "sparse_mocap/motion/standard_skeleton.hpp"
 
 namespace sparse_mocap {

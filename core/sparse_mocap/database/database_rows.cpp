@@ -9,7 +9,7 @@
 #include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/motion/contacts.hpp"
 #include "sparse_mocap/motion/heading.hpp"
-#include "sparse_mocap/motion/humanoid.hpp"
+#include "sparse_mocap/motion/standard_angles.hpp"
 #include "sparse_mocap/sensors/filter.hpp"
 #include "sparse_mocap/sensors/virtual_sensor.hpp"
 

@@ -13,8 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kSidecarName[] = "metadata.csv";
-
 struct BodyKey {
   std::string actor;
   std::array<long, 3 * kNumStandardJoints> bones_um;
@@ -29,12 +27,6 @@ BodyKey body_key(const std::string& actor, const StandardBones& bones) {
   return key;
 }
 
-bool lies_in(const fs::path& path, const fs::path& folder) {
-  if (folder.empty()) return true;
-  const fs::path relative = path.lexically_relative(folder.lexically_normal());
-  return !relative.empty() && *relative.begin() != "..";
-}
-
 std::uint64_t sum_of_bytes(const std::vector<SourceFile>& files) {
   std::uint64_t sum = 0;
   for (const auto& file : files) sum += file.num_bytes;
@@ -46,31 +38,22 @@ std::uint64_t sum_of_bytes(const std::vector<SourceFile>& files) {
 Importer::Importer(const std::vector<fs::path>& sources, const ImportOptions& options,
                    const Progress& progress)
     : options_(options), progress_(progress), files_(find_source_files(sources, options.exclude)) {
-  read_sidecars(sources);
+  report_.warnings = options.label_warnings;
 }
 
 // --- Labels --------------------------------------------------------------------------------------
 
-void Importer::read_sidecars(const std::vector<fs::path>& sources) {
-  if (!options_.metadata.empty()) {
-    sidecars_.emplace_back(fs::path(), Sidecar::read(options_.metadata));
-  } else {
-    for (const auto& source : sources)
-      if (fs::is_directory(source) && fs::exists(source / kSidecarName))
-        sidecars_.emplace_back(source, Sidecar::read(source / kSidecarName));
-  }
-  for (const auto& [folder, sidecar] : sidecars_) {
-    std::vector<SourceFile> described;
-    for (const auto& file : files_)
-      if (lies_in(file.path, folder)) described.push_back(file);
-    for (auto& warning : sidecar.warnings(described)) report_.warnings.push_back(warning);
-  }
-}
-
-bool Importer::describe(const SourceFile& file, Clip& clip) const {
-  return std::any_of(sidecars_.begin(), sidecars_.end(), [&](const auto& one) {
-    return lies_in(file.path, one.first) && one.second.describe(file, clip);
-  });
+// Puts what was said of the file over what its name says.
+void Importer::label(const SourceFile& file, Clip& clip) const {
+  const auto at = options_.labels.find(file.path);
+  if (at == options_.labels.end()) return;
+  const auto put = [](std::string& label, const std::string& said) {
+    if (!said.empty()) label = said;
+  };
+  put(clip.actor, at->second.actor);
+  put(clip.motion_class, at->second.motion_class);
+  put(clip.origin, at->second.origin);
+  put(clip.license, at->second.license);
 }
 
 // --- Progress and report -------------------------------------------------------------------------
@@ -132,7 +115,7 @@ std::vector<StandardBones> Importer::survey() {
     if (is_repeated(i, surveyed->hashes)) return;
     Clip clip;
     clip.actor = labels_of(files_[i].path).actor;
-    describe(files_[i], clip);
+    label(files_[i], clip);
     if (seen.insert(body_key(clip.actor, surveyed->bones)).second)
       bodies.push_back(surveyed->bones);
     num_source_seconds_ += surveyed->duration_s;
@@ -170,7 +153,7 @@ void Importer::recognise(DatabaseContent& content) {
     if (is_held) {
       ++report_.num_known;
       for (Clip& clip : content.clips)
-        if (clip.source == file.name) describe(file, clip);
+        if (clip.source == file.name) label(file, clip);
       return;
     }
     if (is_repeated(i, *hashes)) return;
@@ -238,7 +221,7 @@ void Importer::take_in(const SourceFile& file, ImportedFile imported, DatabaseCo
                    [&](const auto& known) { return known.id == imported.skeleton.id; }))
     skeletons.push_back(imported.skeleton);
   for (std::size_t c = 0; c < imported.clips.size(); ++c) {
-    describe(file, imported.clips[c]);
+    label(file, imported.clips[c]);
     content.clips.push_back(std::move(imported.clips[c]));
     content.clip_rows.push_back(std::move(imported.clip_rows[c]));
   }

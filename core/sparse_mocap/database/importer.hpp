@@ -6,7 +6,6 @@
 #include <map>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "sparse_mocap/base/progress.hpp"
@@ -14,7 +13,6 @@
 #include "sparse_mocap/database/clip_import.hpp"
 #include "sparse_mocap/database/database_content.hpp"
 #include "sparse_mocap/database/duplicates.hpp"
-#include "sparse_mocap/database/sidecar.hpp"
 
 namespace sparse_mocap {
 
@@ -43,8 +41,7 @@ class Importer {
     SourceHashes hashes;
   };
 
-  void read_sidecars(const std::vector<std::filesystem::path>& sources);
-  bool describe(const SourceFile& file, Clip& clip) const;
+  void label(const SourceFile& file, Clip& clip) const;
   void begin_pass(std::size_t num_files, std::uint64_t num_bytes, std::size_t num_passes_left);
   void show(const SourceFile& file) const;
   void count(const SourceFile& file, int num_frames);
@@ -58,8 +55,6 @@ class Importer {
   const ImportOptions& options_;
   const Progress& progress_;
   std::vector<SourceFile> files_;
-  // Each with the folder whose files it describes; an empty one stands for all.
-  std::vector<std::pair<std::filesystem::path, Sidecar>> sidecars_;
   std::vector<Pending> pending_;
   std::map<SourceHashes, std::size_t> first_of_hash_;
   std::set<std::string> replaced_;  // sources whose old clips go, once the new ones are there

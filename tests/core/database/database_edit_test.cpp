@@ -285,14 +285,12 @@ TEST_F(EditDatabase, LeavesDuplicatesOutAndSaysOfWhat) {
 
 TEST_F(EditDatabase, RemembersWhereItsClipsComeFrom) {
   folder_.write("a/broken.bvh", "HIERARCHY\n");
-  folder_.write("a/metadata.csv",
-                "file,actor,license\nanna_walk_1,Anna B.,CC0\ndeep/anna_hop_1.bvh,,private\n"
-                "nobody.bvh,x,y\n");
+  options_.labels = {{folder_ / "a/anna_walk_1.bvh", {"Anna B.", "", "", "CC0"}},
+                     {folder_ / "a/deep/anna_hop_1.bvh", {"", "", "", "private"}}};
+  options_.label_warnings = {"no motion file is called \"nobody.bvh\""};
   const BuildReport report =
       build_database({folder_ / "a", folder_ / "b"}, folder_ / "x.smdb", options_);
-  ASSERT_EQ(report.warnings.size(), 1U);
-  EXPECT_TRUE(
-      contains(report.warnings[0], "metadata.csv:4: no motion file is called \"nobody.bvh\""));
+  EXPECT_EQ(report.warnings, options_.label_warnings);
   EXPECT_EQ(report.source_frames, 6U * 120U + 130U);
   const auto database = MotionDatabase::open(folder_ / "x.smdb");
   const Clip& walk = database->clips()[0];
@@ -319,7 +317,7 @@ TEST_F(EditDatabase, RemembersWhereItsClipsComeFrom) {
 
   // Labels that change later are taken over without reading the files again.
   ImportOptions options;
-  options.metadata = folder_.write("more.csv", "file,class\nanna_walk_1.bvh,stroll\n");
+  options.labels = {{folder_ / "a/anna_walk_1.bvh", {"", "stroll", "", ""}}};
   EXPECT_EQ(add_to_database(folder_ / "x.smdb", {folder_ / "b", folder_ / "a"}, folder_ / "x.smdb",
                             options)
                 .num_known,

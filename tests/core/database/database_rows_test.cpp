@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "sparse_mocap/motion/heading.hpp"
-#include "sparse_mocap/motion/humanoid.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {

@@ -10,7 +10,7 @@
 
 #include "formats/format_test_support.hpp"
 #include "sparse_mocap/formats/acclaim.hpp"
-#include "sparse_mocap/motion/humanoid.hpp"
+#include "sparse_mocap/retargeting/skeleton_mapping.hpp"
 #include "support/refusals.hpp"
 #include "support/synthetic.hpp"
 
@@ -97,7 +97,7 @@ TEST(AveragedBones, OfTheHdm05ActorsAreTheMeanOfTheirFiles) {
   expected.fill(Vec3::Zero());
   for (const std::string actor : {"bd", "bk", "dg", "mm", "tr"}) {
     const auto path = real_data("hdm05") / ("HDM_" + actor + ".asf");
-    bodies.push_back(map_humanoid(read_asf(path).skeleton).bones);
+    bodies.push_back(map_skeleton(read_asf(path).skeleton).bones);
     auto bones = bones_of_asf(path);
     for (std::size_t j = 1; j < expected.size(); ++j) {
       const auto& names = standard_joint_names();

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Motion databases: built from motion files, and files added to one.
+
+Both find the files' labels (see labels) and leave the rest to the core.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from . import _core
+from .labels import find_labels
+
+if TYPE_CHECKING:
+    from typing import Unpack
+
+    from ._core_database import _ImportOptions
+
+Path = str | os.PathLike[str]
+
+
+def build_database(
+    sources: Sequence[Path],
+    output: Path,
+    *,
+    rate_hz: float = 25.0,
+    mirror: bool = False,
+    reverse: bool = False,
+    tempo_copies: Sequence[float] = (0.8, 1.25),
+    exclude: Sequence[str] = (),
+    metadata: Path | None = None,
+    **options: Unpack[_ImportOptions],
+) -> _core.BuildReport:
+    """Builds a database from motion files and folders of them, and tells what came of it.
+
+    rate_hz: frames a second of the database; mirror, reverse: whether each clip is added mirrored
+    and played backwards too; tempo_copies: tempos at which a small database holds each clip once
+    more; exclude: glob patterns of file names to leave out; metadata: a table of labels
+    file,actor,class,source,license (None: metadata.csv of the source folders).
+
+    Further options: strict stops at the first file that cannot be used; keep_duplicates also takes
+    files whose motion is there already; num_threads (0: one a processor; the file is the same);
+    by_hand: joints for skeletons that have them all; mappings: a folder of mappings by hand for
+    others; progress(done, total, what) may return False to cancel; details gets each ProgressReport
+    before progress is called.
+
+    Raises FormatError (nothing usable, or strict), ConfigError, Cancelled and OSError; output is
+    untouched then.
+    """
+    labels, warnings = find_labels(sources, exclude, metadata)
+    return _core.build_database(
+        sources,
+        output,
+        rate_hz=rate_hz,
+        mirror=mirror,
+        reverse=reverse,
+        tempo_copies=tempo_copies,
+        exclude=exclude,
+        labels=labels,
+        label_warnings=warnings,
+        **options,
+    )
+
+
+def add_to_database(
+    database: Path,
+    sources: Sequence[Path],
+    output: Path | None = None,
+    *,
+    exclude: Sequence[str] = (),
+    metadata: Path | None = None,
+    **options: Unpack[_ImportOptions],
+) -> _core.BuildReport:
+    """Adds motion files on the database's skeleton, at its rate, with its kinds of copies.
+
+    Replaces the database (atomically) when output is None. Files that are in are not read again.
+    Options and errors as for build_database.
+    """
+    labels, warnings = find_labels(sources, exclude, metadata)
+    return _core.add_to_database(
+        database,
+        sources,
+        output,
+        exclude=exclude,
+        labels=labels,
+        label_warnings=warnings,
+        **options,
+    )
