@@ -38,7 +38,8 @@ void fill_readings(const Motion& motion, const std::vector<double>& wanted_s, Da
         sampled(r.specific_force_pivot, times_s, wanted_s);
     rows.specific_force_end.middleCols(at, 3) = sampled(r.specific_force_end, times_s, wanted_s);
     rows.angular_velocity.middleCols(at, 3) = sampled(r.angular_velocity, times_s, wanted_s);
-    rows.up.middleCols(at, 3) = sampled(r.gravity_direction, times_s, wanted_s).rowwise().normalized();
+    rows.up.middleCols(at, 3) =
+        sampled(r.gravity_direction, times_s, wanted_s).rowwise().normalized();
   }
 }
 
