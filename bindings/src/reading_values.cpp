@@ -38,9 +38,8 @@ void set_channel(Readings& all, const std::optional<Doubles>& values, Matrix Rea
   require_shape(*values, {static_cast<py::ssize_t>(all.readings.size()), num_sensors, kRows},
                 std::string(name_of(kind)).c_str());
   for (std::size_t t = 0; t < all.readings.size(); ++t)
-    all.readings[t].*channel =
-        Eigen::Map<const Matrix>(values->data(static_cast<py::ssize_t>(t), 0, 0), kRows,
-                                 num_sensors);
+    all.readings[t].*channel = Eigen::Map<const Matrix>(
+        values->data(static_cast<py::ssize_t>(t), 0, 0), kRows, num_sensors);
   for (std::size_t s = 0; s < all.sensors.size(); ++s) {
     bool is_there = false;
     for (const Reading& reading : all.readings)
@@ -156,14 +155,14 @@ void bind_reading_values(py::module_& m) {
                              [](const Readings& all) { return stacked(all, &Reading::position); })
       .def_property_readonly(
           "orientation", [](const Readings& all) { return stacked(all, &Reading::orientation); })
-      .def_property_readonly("sites",
-                             [](const Readings& all) {
-                               std::vector<std::string> names;
-                               for (const Sensor& sensor : all.sensors)
-                                 names.emplace_back(
-                                     all_sites()[static_cast<std::size_t>(sensor.site)].name);
-                               return names;
-                             })
+      .def_property_readonly(
+          "sites",
+          [](const Readings& all) {
+            std::vector<std::string> names;
+            for (const Sensor& sensor : all.sensors)
+              names.emplace_back(all_sites()[static_cast<std::size_t>(sensor.site)].name);
+            return names;
+          })
       .def_property_readonly("positions_along_bone",
                              [](const Readings& all) {
                                std::vector<double> positions;

@@ -38,9 +38,8 @@ SensorInput input_from(const std::string& site, const std::vector<std::string>& 
 // What an ideal sensor would have measured: forces, angular velocities and orientations, or None.
 py::tuple corrected(const SensorInput& input, const Doubles& specific_force,
                     const OptionalDoubles& angular_velocity, const OptionalDoubles& orientation) {
-  SensorRecording recording =
-      recording_from(new_array({specific_force.shape(0)}), specific_force, angular_velocity,
-                     std::nullopt, orientation);
+  SensorRecording recording = recording_from(new_array({specific_force.shape(0)}), specific_force,
+                                             angular_velocity, std::nullopt, orientation);
   for (Eigen::Index t = 0; t < recording.num_samples(); ++t) {
     const SensorSample ideal = input.correction(sample_at(recording, t));
     recording.specific_force.col(t) = ideal.specific_force;
@@ -114,11 +113,11 @@ void bind_sensor_input(py::module_& m) {
            py::arg("channels") = std::vector<std::string>{"specific_force"}, py::kw_only(),
            py::arg("position_along_bone") = 1.0, py::arg("scale") = 1.0,
            py::arg("R_site_sensor") = py::none(), py::arg("gyroscope_bias") = py::none())
-      .def_property_readonly("site",
-                             [](const SensorInput& input) {
-                               return std::string(
-                                   all_sites()[static_cast<std::size_t>(input.sensor.site)].name);
-                             })
+      .def_property_readonly(
+          "site",
+          [](const SensorInput& input) {
+            return std::string(all_sites()[static_cast<std::size_t>(input.sensor.site)].name);
+          })
       .def_property_readonly(
           "position_along_bone",
           [](const SensorInput& input) { return input.sensor.position_along_bone; })
@@ -163,10 +162,13 @@ void bind_readings(py::module_& m) {
       py::arg("position") = py::none(), py::arg("orientation") = py::none());
   m.def("gravity_directions", &directions, py::arg("times_s"), py::arg("specific_force"),
         py::arg("angular_velocity"), py::kw_only(), py::arg("average") = "causal");
-  m.def("spread_evenly", [](const Doubles& arrival_s) {
-    require_shape(arrival_s, {-1}, "arrival_s");
-    return array_of(spread_evenly(span_of(arrival_s)));
-  }, py::arg("arrival_s"));
+  m.def(
+      "spread_evenly",
+      [](const Doubles& arrival_s) {
+        require_shape(arrival_s, {-1}, "arrival_s");
+        return array_of(spread_evenly(span_of(arrival_s)));
+      },
+      py::arg("arrival_s"));
   m.def(
       "host_times",
       [](const Doubles& device_s, const Doubles& arrival_s) {

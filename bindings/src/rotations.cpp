@@ -46,8 +46,8 @@ py::array_t<double> from_matrices(const Doubles& matrices) {
 
 void bind_rotations(py::module_& m) {
   const Eigen::Vector4d R_world_zup = wxyz_of(kR_world_zup);
-  m.attr("R_WORLD_ZUP") = py::make_tuple(R_world_zup[0], R_world_zup[1], R_world_zup[2],
-                                         R_world_zup[3]);
+  m.attr("R_WORLD_ZUP") =
+      py::make_tuple(R_world_zup[0], R_world_zup[1], R_world_zup[2], R_world_zup[3]);
   m.def("rotation_product", &product, py::arg("left"), py::arg("right"));
   m.def("rotated", &rotated, py::arg("rotations"), py::arg("vectors"));
   m.def("rotations_from_matrices", &from_matrices, py::arg("matrices"));

@@ -17,7 +17,9 @@ Quat turned(const Quat& R_held_sensor, const Vec3& rate, double dt_s) {
   return (R_held_sensor * step).normalized();
 }
 
-bool is_next(double step_s) { return step_s > 0.0 && step_s <= GravityDirectionFilter::kLongestGap_s; }
+bool is_next(double step_s) {
+  return step_s > 0.0 && step_s <= GravityDirectionFilter::kLongestGap_s;
+}
 
 // A sample of a stretch without gaps, turned into its held frame.
 struct Held {
@@ -96,7 +98,7 @@ Eigen::Matrix3Xd whole_take_directions(const SensorRecording& recording) {
 }  // namespace
 
 Vec3 GravityDirectionFilter::update(double time_s, const Vec3& specific_force,
-                               const Vec3& angular_velocity) {
+                                    const Vec3& angular_velocity) {
   if (!std::isfinite(time_s) || !specific_force.allFinite() || !angular_velocity.allFinite())
     return kUnknown;
   const double dt_s = time_s - last_s_;

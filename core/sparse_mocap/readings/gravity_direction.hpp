@@ -9,7 +9,8 @@
 
 namespace sparse_mocap {
 
-// The direction of gravity, as a unit vector against it (up), in a sensor's axes, from accelerometer and gyroscope together.
+// The direction of gravity, as a unit vector against it (up), in a sensor's axes, from
+// accelerometer and gyroscope together.
 //
 // The gyroscope carries along a frame that stays put in the world but for a slow drift. There the
 // wearer's own accelerations average out and gravity remains, as in the inclination step of VQF

@@ -177,13 +177,11 @@ void ReadingStream::add_whole_take_directions() {
   for (SensorState& state : states_) {
     const SensorRecording recording{std::exchange(state.times_s, {}), columns(state.specific_force),
                                     columns(state.angular_velocity)};
-    const Eigen::Matrix3Xd directions =
-        gravity_directions(recording, GravityAverage::whole_take);
+    const Eigen::Matrix3Xd directions = gravity_directions(recording, GravityAverage::whole_take);
     for (auto& [channel, resampler] : state.channels)
-      for (Eigen::Index t = 0;
-           channel == Channel::gravity_direction && t < recording.num_samples(); ++t)
-        resampler.push(recording.times_s[static_cast<std::size_t>(t)],
-                       numbers(directions.col(t)));
+      for (Eigen::Index t = 0; channel == Channel::gravity_direction && t < recording.num_samples();
+           ++t)
+        resampler.push(recording.times_s[static_cast<std::size_t>(t)], numbers(directions.col(t)));
     state.specific_force.clear();
     state.angular_velocity.clear();
   }
@@ -193,8 +191,7 @@ std::vector<Reading> ReadingStream::flush() {
   std::vector<Reading> readings;
   if (!begin_s_) return readings;
   add_whole_take_directions();
-  const auto count =
-      static_cast<long long>((end_s_ - *begin_s_) * settings_.rate_hz + kSlack) + 1;
+  const auto count = static_cast<long long>((end_s_ - *begin_s_) * settings_.rate_hz + kSlack) + 1;
   for (; num_given_ < count; ++num_given_) readings.push_back(reading_at(next_time_s(), true));
   return readings;
 }

@@ -24,7 +24,7 @@ struct SensorInput {
 struct ReadingSettings {
   double rate_hz = 25.0;
   GravityAverage gravity_average = GravityAverage::causal;
-  TrackerWorld tracker_world;
+  TrackerWorld tracker_world{};
   GaussianFilter filter = kReadingFilter;  // on all channels but orientation
 };
 

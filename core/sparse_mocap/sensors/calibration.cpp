@@ -80,7 +80,7 @@ double position_on_bone(const GuidedTurn& turn, double lever) {
 
 // The position that the most certain movement shows.
 void find_position(std::span<const ObservedTurn> turns, const Vec3& gyroscope_bias, double bone_m,
-                SensorCalibration& out) {
+                   SensorCalibration& out) {
   for (const auto& observed : turns) {
     if (!observed.turn.still_position || !observed.recording.has_gyroscope()) continue;
     const Lever lever =
@@ -144,7 +144,8 @@ SensorCalibration calibrate_sensor(const Site& site, const SensorRecording& stan
   out.is_mounting_determined = mounting.is_determined;
   out.axis_ratio = mounting.axis_ratio;
   out.gyroscope_bias = gravity.gyroscope_bias;
-  out.position_along_bone = settings.default_position_along_bone.value_or(typical_position_along_bone(site));
+  out.position_along_bone =
+      settings.default_position_along_bone.value_or(typical_position_along_bone(site));
   if (mounting.is_determined)
     find_position(turns, gravity.gyroscope_bias, bone_length_m(site, settings), out);
   note_what_is_missing(turns, mounting, out, out.notes);

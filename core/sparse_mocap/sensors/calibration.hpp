@@ -21,12 +21,12 @@ struct SensorCalibration {
 
   Vec3 gyroscope_bias = Vec3::Zero();  // rad/s, sensor axes
 
-  double gravity = 0.0;            // what the sensor read at rest, in its own unit
-  double unrest_mps2 = 0.0;        // while the wearer stood
-  double axis_ratio = 1.0;         // how clearly the movements show one axis; 1: not at all
+  double gravity = 0.0;             // what the sensor read at rest, in its own unit
+  double unrest_mps2 = 0.0;         // while the wearer stood
+  double axis_ratio = 1.0;          // how clearly the movements show one axis; 1: not at all
   double position_deviation = 1.0;  // standard deviation of position_along_bone
-  double quality = 0.0;            // 0 (nothing is sure) to 1
-  std::vector<std::string> notes;  // what could not be determined, why, and what to do
+  double quality = 0.0;             // 0 (nothing is sure) to 1
+  std::vector<std::string> notes;   // what could not be determined, why, and what to do
 };
 
 // A guided movement as one sensor recorded it, in the sensor's own unit.
@@ -47,10 +47,10 @@ struct CalibrationSettings {
 };
 
 // Calibrates one sensor: scale and two angles of its mounting from gravity while the performer
-// stands, the third from the axis of guided movements, its position along the bone from the lever about the point
-// that a movement leaves still. What the movements do not determine is left at its default and
-// named in notes. Throws ConfigError as standing_gravity does, and for a height or position that
-// cannot be.
+// stands, the third from the axis of guided movements, its position along the bone from the lever
+// about the point that a movement leaves still. What the movements do not determine is left at its
+// default and named in notes. Throws ConfigError as standing_gravity does, and for a height or
+// position that cannot be.
 SensorCalibration calibrate_sensor(const Site& site, const SensorRecording& standing,
                                    std::span<const RecordedMovement> movements,
                                    const CalibrationSettings& settings);

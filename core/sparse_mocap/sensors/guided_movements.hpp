@@ -24,8 +24,8 @@ Vec3 up_while_standing(const Site& site, StandingPose pose);
 struct GuidedTurn {
   std::string_view site;
   Vec3 axis;  // unit, site axes: from hanging down (trunk: upright) the sensor first turns about it
-  // The position along the site's bone that stays where it is, as 0 is the bone's pivot and 1 its end
-  // (below 0: further up the limb); none when nothing does.
+  // The position along the site's bone that stays where it is, as 0 is the bone's pivot and 1 its
+  // end (below 0: further up the limb); none when nothing does.
   std::optional<double> still_position;
 };
 

@@ -16,10 +16,10 @@ namespace sparse_mocap {
 // A rigid bone makes the specific force linear in the position along it, so the two ends determine
 // every position between them.
 struct VirtualReadings {
-  Eigen::Matrix3Xd specific_force_pivot;  // m/s^2, at the carrier's pivot (elbow, knee)
-  Eigen::Matrix3Xd specific_force_end;    // m/s^2, at the carrier's end (wrist, ankle)
-  Eigen::Matrix3Xd angular_velocity;      // rad/s
-  Eigen::Matrix3Xd gravity_direction;     // unit, against gravity (up)
+  Eigen::Matrix3Xd specific_force_pivot;          // m/s^2, at the carrier's pivot (elbow, knee)
+  Eigen::Matrix3Xd specific_force_end;            // m/s^2, at the carrier's end (wrist, ankle)
+  Eigen::Matrix3Xd angular_velocity;              // rad/s
+  Eigen::Matrix3Xd gravity_direction;             // unit, against gravity (up)
   Eigen::Matrix3Xd position_pivot, position_end;  // m, world
   std::vector<Mat3> R_world_sensor;
 

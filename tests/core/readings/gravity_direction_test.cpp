@@ -108,8 +108,7 @@ TEST(GravityDirection, PassesOverSamplesThatAreNone) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Eigen::Index t : {300, 301, 302, 500})
     sensor.recording.specific_force.col(t).x() = nan;
-  for (const auto& found :
-       {causal(sensor.recording), both_ways(sensor.recording)}) {
+  for (const auto& found : {causal(sensor.recording), both_ways(sensor.recording)}) {
     EXPECT_FALSE(found.col(301).allFinite());
     EXPECT_LT(degrees_between(found.col(303), sensor.up.col(303)), 0.2);
     EXPECT_LT(degrees_between(found.col(900), sensor.up.col(900)), 0.2);

@@ -322,8 +322,7 @@ TEST(ReadingStream, LaysADevicesClockUnderTheArrivals) {
   for (const bool has_clock : {true, false}) {
     ReadingStream stream(inputs(1, Channel::specific_force), {});
     const auto all = arrivals(recording, 100.0, has_clock);
-    for (std::size_t i = 0; i < all.size(); ++i)
-      stream.push_arrivals(0, {&all[i], 1});
+    for (std::size_t i = 0; i < all.size(); ++i) stream.push_arrivals(0, {&all[i], 1});
     const auto readings = stream.flush();
     const Oracle oracle(recording.times_s, recording.specific_force);
     ASSERT_GT(readings.size(), 74U);
@@ -340,7 +339,8 @@ TEST(ReadingStream, DropsArrivalsWithoutWhatIsWanted) {
   nothing.angular_velocity = Vec3::UnitX();
   sample.specific_force = Vec3::UnitY();
   ReadingStream stream(inputs(1, Channel::specific_force), {});
-  const std::vector<Arrival> some{{50.0, kNone, nothing}, {60.0, 0.0, sample}, {60.01, 0.01, sample}};
+  const std::vector<Arrival> some{
+      {50.0, kNone, nothing}, {60.0, 0.0, sample}, {60.01, 0.01, sample}};
   EXPECT_EQ(stream.push_arrivals(0, some), 2);
   const auto readings = stream.flush();
   ASSERT_FALSE(readings.empty());
