@@ -164,6 +164,15 @@ TEST(Model, FileGivesBackWhatWasWritten) {
   EXPECT_TRUE(model_from_bytes(encode_model(bare), "m").tensors.empty());
 }
 
+TEST(Model, FileHasEveryArrayAligned) {
+  const auto file = encode_model(small_model());
+  const SafetensorsView view = parse_safetensors(file);
+  ASSERT_EQ(view.tensors.size(), 5U);
+  for (const auto& tensor : view.tensors)
+    EXPECT_EQ((tensor.bytes.data() - file.data()) % static_cast<int>(size_of(tensor.type)), 0)
+        << tensor.name;
+}
+
 TEST(Model, RefusesAFileCutAtAnyLengthOrWithAnyByteDamaged) {
   const auto file = encode_model(small_model());
   ASSERT_EQ(complaint(file), "");

@@ -69,7 +69,7 @@ class StoredModels : public ::testing::Test {
     const std::string old = content(path_);
     SafetensorsView view = parse_safetensors(std::as_bytes(std::span(old)));
     view.tensors.insert(view.tensors.begin(), added.begin(), added.end());
-    view.metadata.insert(texts.begin(), texts.end());
+    for (const auto& [key, text] : texts) view.metadata[key] = text;
     view.metadata["metadata_checksum"] = metadata_checksum(view.metadata);
     std::string file = safetensors_header(view.metadata, view.tensors);
     for (const auto& tensor : view.tensors)
@@ -163,6 +163,12 @@ TEST_F(StoredModels, RefusesArraysOfItsOwnWithoutAChecksum) {
           {{"models", R"({"liu2011":{"version":1,"metadata":{}}})"}});
   EXPECT_TRUE(contains(error_of([&] { MotionDatabase::open(path_); }),
                        "the array 'models/liu2011/W' has no checksum"));
+}
+
+TEST_F(StoredModels, RefusesRowsWithoutAChecksum) {
+  rewrite({}, {{"checksums", "{}"}});
+  EXPECT_TRUE(contains(error_of([&] { MotionDatabase::open(path_); }),
+                       "the array 'angles' has no checksum"));
 }
 
 TEST_F(StoredModels, RefusesAListOfModelsThatIsDamaged) {
