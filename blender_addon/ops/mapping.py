@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which joint is which: remembered for a skeleton, saved to a file and read from one."""
 
+from collections.abc import Callable
+
 import bpy
 from bpy.props import BoolProperty, StringProperty
 from bpy.types import Context, Event, Operator
@@ -14,6 +16,12 @@ SKIP = {"HIDDEN", "SKIP_SAVE"}
 
 class _MappingOperator:
     """Mix-in: does it, or says in one line why not."""
+
+    report: Callable[[set[str], str], None]  # the operator's own
+
+    def do(self, context: Context) -> str:
+        """What is asked for; returns one line that says so."""
+        raise NotImplementedError
 
     def execute(self, context: Context) -> set[str]:
         """Do it."""

@@ -11,7 +11,7 @@ from bpy.types import Context, UILayout
 
 from ..scene import compat
 from ..session.core import missing_reason
-from ..session.imported import USUAL_SIZES_M, Glance, glances
+from ..session.imported import USUAL_SIZES_M, glances
 from . import text
 from .step import redraw_soon
 
@@ -80,10 +80,9 @@ def _draw_glance(
     if entry.is_opening:
         layout.label(text="Reading the file", icon="SORTTIME")
         redraw_soon()
-    elif entry.error:
+    elif (glance := entry.value) is None:
         text.error(layout, context, entry.error)
     else:
-        glance: Glance = entry.value
         size_m = glance.size_with(unit)
         rows = [("Joints", str(glance.num_joints))]
         if glance.num_frames > 0:

@@ -73,7 +73,7 @@ class Encoder:
             samples["specific_force"].astype(np.float64),
             samples["angular_velocity"].astype(np.float64),
             samples["orientation"].astype(np.float64),
-            samples["sensor"].astype(np.int64),
+            samples["sensor"].tolist(),
         )
         self._counter += 1
         return [self._framed(packet) for packet in packets]

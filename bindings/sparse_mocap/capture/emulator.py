@@ -139,7 +139,7 @@ class Emulator:
         self._start_s = 0.0
         self._random = random.Random(self.faults.seed)
         count = len(self.take.sensors)
-        groups = [(index,) for index in range(count)]
+        groups: list[tuple[int, ...]] = [(index,) for index in range(count)]
         self._settings = with_rate(self.driver, self.options, 1.0 / period_s(self.take))
         if can_share_a_port(self.driver, self.take.sites, self._settings):
             groups = [tuple(range(count))]

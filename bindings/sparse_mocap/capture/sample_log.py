@@ -9,6 +9,7 @@ was; while nothing is recorded, though, the oldest files are given up.
 
 from __future__ import annotations
 
+import io
 import os
 import re
 from contextlib import suppress
@@ -48,6 +49,8 @@ def log_path(folder: Path, number: int) -> Path:
 
 class SampleLogWriter:
     """Appends samples to a new log."""
+
+    _file: io.FileIO
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -91,6 +94,8 @@ class SampleLogWriter:
 
 class SampleLogReader:
     """Follows a log from a sample on."""
+
+    _file: io.FileIO
 
     def __init__(self, folder: Path, position: int = 0) -> None:
         self._folder = folder

@@ -98,6 +98,8 @@ def build(
     SOURCE is a .bvh or .amc file, or a folder, which is searched recursively. An .amc needs its
     .asf beside it.
     """
+    if no_tempo_copies:
+        options["tempo_copies"] = ()
     with import_bar("Building") as (progress, details):
         report = build_database(
             list(sources),
@@ -108,7 +110,6 @@ def build(
             progress=progress,
             details=details,
             **options,
-            **({"tempo_copies": ()} if no_tempo_copies else {}),
         )
     _tell(output, report, fps)
 

@@ -24,7 +24,7 @@ def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
     tables = [table for text in texts if (table := _table(text)) is not None]
     if not tables:
         return None
-    force_names = ()
+    force_names: tuple[str, ...] = ()
     for table in tables:
         for names in _FORCES:
             if table.has(*names) and not force_names:

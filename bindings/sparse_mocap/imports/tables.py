@@ -124,7 +124,9 @@ def unwrapped(counts: Floats, bits: int) -> Floats:
     """Returns the counts of a counter of a few bits as counts that go on."""
     steps = np.diff(counts)
     wrap = 2.0**bits
-    return counts + np.concatenate([[0.0], np.cumsum(np.where(steps < -wrap / 2, wrap, 0.0))])
+    wraps = np.cumsum(np.where(steps < -wrap / 2, wrap, 0.0))
+    going_on: Floats = counts + np.concatenate([[0.0], wraps])
+    return going_on
 
 
 def interpolated(wanted_s: Floats, times_s: Floats, values: Floats) -> Floats:
