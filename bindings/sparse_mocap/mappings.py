@@ -23,6 +23,8 @@ from ._core import (
     write_mapping,
 )
 
+__all__ = ["find_mapping", "forget_mapping", "mapping_folder", "remember_mapping", "to_standard"]
+
 
 def mapping_folder() -> Path:
     """Where mappings are remembered; the variable SPARSE_MOCAP_MAPPINGS names another folder."""

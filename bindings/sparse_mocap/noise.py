@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from . import GRAVITY_MPS2
 from .take import SensorRecord, Take
 
+__all__ = ["NoiseModel", "noise_presets", "noisy"]
+
 Floats = NDArray[np.float64]
 
 

@@ -11,6 +11,8 @@ from .config import CaptureConfig, LinkConfig
 from .drivers import keep_alive_commands, make_parser, parsed, site_order, start_commands
 from .sample_log import Samples
 
+__all__ = ["Decoded", "Decoder", "Sensor"]
+
 IDLE_S = 0.2
 """A port without a byte for this long after it was opened was not opened amid a message: devices
 send a message in one go, adapters hold bytes back for some 20 ms."""

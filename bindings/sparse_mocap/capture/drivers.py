@@ -14,6 +14,17 @@ from .. import keep_alive_commands as _keep_alive_commands
 from .. import start_commands as _start_commands
 from .sample_log import SAMPLE, Samples
 
+__all__ = [
+    "Encoder",
+    "can_share_a_port",
+    "keep_alive_commands",
+    "make_parser",
+    "parsed",
+    "site_order",
+    "start_commands",
+    "with_rate",
+]
+
 DATAGRAM_DRIVERS = ("slimevr",)
 """On a serial port their datagrams come as [u16 length, big-endian][datagram]."""
 

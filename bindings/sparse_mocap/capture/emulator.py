@@ -25,6 +25,8 @@ from .drivers import Encoder, can_share_a_port, with_rate
 from .errors import CaptureError
 from .sample_log import SAMPLE, Samples
 
+__all__ = ["Emulator", "Faults", "Line", "instants", "period_s"]
+
 _LONGEST_NAP_S = 0.05
 _DRAIN_S = 2.0
 _GREETING_S = 0.3

@@ -18,6 +18,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = ["SampleLogReader", "SampleLogWriter", "log_path"]
+
 MAGIC = b"SMSAMPL1"
 FILE_NAME = "samples.bin"
 PER_FILE = 1 << 18

@@ -12,6 +12,8 @@ import click
 
 from .faults import Fault, as_faults
 
+__all__ = ["app", "run"]
+
 _COMMANDS = {
     "calibrate": ".calibrate:calibrate_command",
     "convert": ".convert:convert",

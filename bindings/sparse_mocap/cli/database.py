@@ -24,6 +24,8 @@ from .console import import_bar, warn
 from .database_info import described, show
 from .options import FilePath
 
+__all__ = ["add", "build", "database", "drop", "info"]
+
 _IMPORT_OPTIONS = (
     click.option(
         "--exclude", metavar="GLOB", multiple=True,

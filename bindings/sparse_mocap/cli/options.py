@@ -12,6 +12,8 @@ import click
 
 from .. import method_names, noise_presets, preset_names, site_names
 
+__all__ = ["Place", "Sites", "Span", "check_ending", "check_presets", "places_of"]
+
 PAPER_SITES = "left_wrist,right_wrist,left_ankle,right_ankle"
 
 FilePath = click.Path(path_type=Path)

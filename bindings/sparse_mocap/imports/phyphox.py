@@ -8,6 +8,8 @@ import numpy as np
 from ..take import SensorRecord
 from .tables import RecordingError, Table, Text, check_finite, interpolated, read_table
 
+__all__ = ["read"]
+
 NAME = "phyphox CSV"
 
 _TIME = "Time (s)"

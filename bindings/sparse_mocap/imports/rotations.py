@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from .. import GRAVITY_MPS2
 
+__all__ = ["from_matrices", "from_z_up", "into_sensor", "with_gravity"]
+
 Floats = NDArray[np.float64]
 
 STANDARD_GRAVITY_MPS2 = 9.80665

@@ -15,6 +15,21 @@ from numpy.typing import NDArray
 
 from ..table_errors import TableError
 
+__all__ = [
+    "RecordingError",
+    "Table",
+    "Text",
+    "check_finite",
+    "find_line",
+    "interpolated",
+    "interpolated_orientation",
+    "normalised",
+    "read_table",
+    "read_texts",
+    "shown",
+    "unwrapped",
+]
+
 Floats = NDArray[np.float64]
 
 _ENDINGS = (".csv", ".txt", ".json")

@@ -13,6 +13,8 @@ from ..take import SensorRecord
 from .rotations import STANDARD_GRAVITY_MPS2, from_z_up
 from .tables import Text, check_finite, find_line, interpolated_orientation, normalised, read_table
 
+__all__ = ["read"]
+
 NAME = "x-IMU3 log folder"
 
 _TIME = "Timestamp (us)"
