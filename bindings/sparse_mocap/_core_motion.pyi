@@ -8,8 +8,12 @@ from ._core_types import Floats, Path
 class Skeleton:
     """A joint tree: pivot = end_parent + R_parent offset, end = pivot + R_joint bone."""
 
-    names: list[str]
-    parents: list[int]
+    @property
+    def names(self) -> list[str]:
+        """The J joints' names, the root first."""
+    @property
+    def parents(self) -> list[int]:
+        """(J,) index of each joint's parent, smaller than its own; -1 for the root."""
     @property
     def offsets(self) -> Floats:
         """(J, 3) m, from the parent's end to the pivot, in the parent's frame."""
@@ -26,10 +30,17 @@ class Motion:
         frame_time_s: float,
         root_positions: ArrayLike,
         rotations: ArrayLike,
-    ) -> None: ...
-    skeleton: Skeleton
-    frame_time_s: float
-    num_frames: int
+    ) -> None:
+        """root_positions (T, 3) m; rotations (T, J, 4) w x y z, relative to the parent."""
+    @property
+    def skeleton(self) -> Skeleton:
+        """A copy of it."""
+    @property
+    def frame_time_s(self) -> float:
+        """From one frame to the next."""
+    @property
+    def num_frames(self) -> int:
+        """T."""
     @property
     def root_positions(self) -> Floats:
         """(T, 3) m, world, pivot of the root."""
@@ -43,10 +54,17 @@ class Motion:
         """(T, J, 3) m, the joints' ends; frame: 'heading' (standard skeleton), 'root', 'world'."""
     def pivot_positions(self) -> Floats:
         """(T, J, 3) m, world, what the joints turn about."""
-    def resampled(self, rate_hz: float) -> Motion: ...
-    def trimmed(self, begin: int, end: int) -> Motion: ...
-    def reversed(self) -> Motion: ...
-    def mirrored(self) -> Motion: ...
+    def resampled(self, rate_hz: float) -> Motion:
+        """The motion sampled at a new rate: rotations by slerp, positions by interpolation.
+
+        A zero-phase Gaussian low-pass comes first where the rate goes down.
+        """
+    def trimmed(self, begin: int, end: int) -> Motion:
+        """The frames [begin, end)."""
+    def reversed(self) -> Motion:
+        """The same movement played backwards."""
+    def mirrored(self) -> Motion:
+        """The movement seen in a mirror at x = 0: left and right joints change places."""
 
 def read_motion(
     path: Path,

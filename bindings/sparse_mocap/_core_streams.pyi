@@ -34,9 +34,11 @@ class StreamParser:
     def pop_replies(self) -> list[bytes]:
         """What the protocol wants answered."""
     @property
-    def counters(self) -> dict[str, int]: ...
+    def counters(self) -> dict[str, int]:
+        """What was received and what was lost, each kind by its name."""
     @property
-    def sensor_names(self) -> list[str]: ...
+    def sensor_names(self) -> list[str]:
+        """The sensors seen so far, in the order of their indices."""
     @property
     def last_message(self) -> str:
         """What the device told last in words, such as an error."""
@@ -45,7 +47,8 @@ class StreamEncoder:
     """What a device with these sensors would send."""
 
     def __init__(self, driver: str, sensor_names: Sequence[str], **options: object) -> None: ...
-    def hello(self) -> list[bytes]: ...
+    def hello(self) -> list[bytes]:
+        """What the device sends of its own accord when it starts."""
     def encode(
         self,
         time_s: float,
@@ -59,9 +62,12 @@ class StreamEncoder:
 
         sensors: whose rows these are; all sensors' when None.
         """
-    def respond(self, from_host: bytes) -> bytes: ...
+    def respond(self, from_host: bytes) -> bytes:
+        """What the device answers to what a host sends it."""
 
-def driver_names() -> list[str]: ...
+def driver_names() -> list[str]:
+    """The protocols that StreamParser takes."""
+
 def driver_options(driver: str) -> dict[str, tuple[str, str]]:
     """Each option's default and what it means."""
 

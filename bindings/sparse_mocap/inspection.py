@@ -12,6 +12,8 @@ from typing import Any
 from ._core import FormatError, MappingError, Motion, SkeletonMapping, read_motion
 from .mappings import find_mapping
 
+__all__ = ["Inspection", "inspect_motion"]
+
 
 @dataclass(frozen=True)
 class Inspection:

@@ -22,6 +22,8 @@ from ._core import (
     write_mapping,
 )
 
+__all__ = ["find_mapping", "forget_mapping", "mapping_folder", "remember_mapping", "to_standard"]
+
 
 def mapping_folder() -> Path:
     """The folder of remembered mappings; the variable SPARSE_MOCAP_MAPPINGS overrides it."""

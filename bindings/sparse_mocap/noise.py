@@ -13,6 +13,8 @@ from . import GRAVITY_MPS2
 from .rotations import about_axis, product
 from .take import SensorRecord, Take
 
+__all__ = ["NoiseModel", "noise_presets", "noisy"]
+
 Floats = NDArray[np.float64]
 
 

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from .evaluation.result import HISTOGRAM_BIN_CM, Evaluation
 from .files import replaced
 
+__all__ = ["plot_errors_over_time", "plot_evaluation"]
+
 Floats = NDArray[np.float64]
 
 _COLOURS = ("#1b6ca8", "#d1603d", "#3d8b5f", "#8a5a9e", "#7a7a7a", "#c2a02c", "#4f4f4f", "#b0b0b0")

@@ -17,6 +17,8 @@ from ._core import Motion
 from .files import replaced
 from .inspection import Inspection
 
+__all__ = ["plot_inspections"]
+
 Floats = NDArray[np.float64]
 
 _NUM_FRAMES = 6

@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from .files import write_text
 from .table_errors import TableError, read_lines
 
+__all__ = ["position_header", "position_row", "read_positions", "write_positions"]
+
 Floats = NDArray[np.float64]
 Path = str | os.PathLike[str]
 

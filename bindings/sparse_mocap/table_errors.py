@@ -7,6 +7,8 @@ import os
 
 from . import FormatError
 
+__all__ = ["TableError", "TakeError", "read_lines"]
+
 
 class TableError(FormatError):
     """A table has an error; str() is one line: ``take.csv:12: what; what to do``."""

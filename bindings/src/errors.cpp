@@ -13,8 +13,10 @@ py::object& format_error_class() {
   static py::gil_safe_call_once_and_store<py::object> storage;
   return storage
       .call_once_and_store_result([] {
-        return py::reinterpret_steal<py::object>(
-            PyErr_NewException("sparse_mocap._core.FormatError", PyExc_ValueError, nullptr));
+        return py::reinterpret_steal<py::object>(PyErr_NewExceptionWithDoc(
+            "sparse_mocap._core.FormatError",
+            "The input is at fault; str() is one line: where, what, what to do.", PyExc_ValueError,
+            nullptr));
       })
       .get_stored();
 }
@@ -46,9 +48,11 @@ void bind_errors(py::module_& m) {
       PyErr_SetFromErrnoWithFilename(PyExc_OSError, error.path1().string().c_str());
     }
   });
-  py::register_exception<ConfigError>(m, "ConfigError", PyExc_ValueError);
-  py::register_exception<MappingError>(m, "MappingError", PyExc_ValueError);
-  py::register_exception<Cancelled>(m, "Cancelled");
+  py::register_exception<ConfigError>(m, "ConfigError", PyExc_ValueError).doc() =
+      "A setting is outside what it may be; str() names it, its value and its range.";
+  py::register_exception<MappingError>(m, "MappingError", PyExc_ValueError).doc() =
+      "A skeleton is not recognised as a human body; str() says why.";
+  py::register_exception<Cancelled>(m, "Cancelled").doc() = "The progress callback asked to stop.";
 }
 
 }  // namespace sparse_mocap::python

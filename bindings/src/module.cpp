@@ -4,7 +4,11 @@
 
 PYBIND11_MODULE(_core, m) {
   using namespace sparse_mocap;
-  m.doc() = "The compiled core of Sparse Mocap.";
+  m.doc() =
+      R"doc(The compiled core. Shapes: T frames, J joints, S sensors. SI units, quaternions w x y z.
+
+Long calls release the GIL. ``progress(done, total, what)`` is called with the GIL held and cancels
+the call by returning False (the call then raises Cancelled and leaves nothing behind).)doc";
   m.attr("__version__") = SPARSE_MOCAP_VERSION;
   m.attr("GRAVITY_MPS2") = kGravity_mps2;
   python::bind_errors(m);

@@ -170,50 +170,91 @@ py::array_t<double> pivots_of(const Motion& motion) {
   return out;
 }
 
+void bind_skeleton(py::module_& m) {
+  py::class_<Skeleton>(
+      m, "Skeleton",
+      "A joint tree: pivot = end_parent + R_parent offset, end = pivot + R_joint bone.")
+      .def_property_readonly(
+          "names",
+          [](const Skeleton& s) {
+            std::vector<std::string> names;
+            for (const auto& joint : s.joints()) names.push_back(joint.name);
+            return names;
+          },
+          "The J joints' names, the root first.")
+      .def_property_readonly(
+          "parents",
+          [](const Skeleton& s) {
+            std::vector<int> parents;
+            for (const auto& joint : s.joints()) parents.push_back(joint.parent);
+            return parents;
+          },
+          "(J,) index of each joint's parent, smaller than its own; -1 for the root.")
+      .def_property_readonly(
+          "offsets", [](const Skeleton& s) { return vectors(s, &Joint::offset_parent); },
+          "(J, 3) m, from the parent's end to the pivot, in the parent's frame.")
+      .def_property_readonly(
+          "bones", [](const Skeleton& s) { return vectors(s, &Joint::bone); },
+          "(J, 3) m, from pivot to end, in the joint's frame (the world's in rest pose).");
+}
+
+void bind_motion_class(py::module_& m) {
+  using release = py::call_guard<py::gil_scoped_release>;
+  py::class_<Motion>(m, "Motion", "What a skeleton does, sampled evenly.")
+      .def(py::init(&make_motion), py::arg("skeleton"), py::arg("frame_time_s"),
+           py::arg("root_positions"), py::arg("rotations"),
+           "root_positions (T, 3) m; rotations (T, J, 4) w x y z, relative to the parent.")
+      .def_property_readonly(
+          "skeleton", [](const Motion& motion) { return motion.skeleton; }, "A copy of it.")
+      .def_readonly("frame_time_s", &Motion::frame_time_s, "From one frame to the next.")
+      .def_property_readonly("num_frames", &Motion::num_frames, "T.")
+      .def_property_readonly("root_positions", &root_positions,
+                             "(T, 3) m, world, pivot of the root.")
+      .def_property_readonly("rotations", &rotations,
+                             "(T, J, 4) rotation of each joint relative to its parent, w x y z.")
+      .def_property_readonly(
+          "offset_tracks", &offset_tracks,
+          "Joints that the file moves besides the root, and (T, 3) m their offset in every frame.")
+      .def("joint_positions", &positions_of, py::arg("frame") = "world",
+           "(T, J, 3) m, the joints' ends; frame: 'heading' (standard skeleton), 'root', 'world'.")
+      .def("pivot_positions", &pivots_of, "(T, J, 3) m, world, what the joints turn about.")
+      .def("resampled", &resampled, py::arg("rate_hz"), release(),
+           R"doc(The motion sampled at a new rate: rotations by slerp, positions by interpolation.
+
+A zero-phase Gaussian low-pass comes first where the rate goes down.)doc")
+      .def("trimmed", &trimmed, py::arg("begin"), py::arg("end"), "The frames [begin, end).")
+      .def("reversed", &reversed, "The same movement played backwards.")
+      .def(
+          "mirrored",
+          [](const Motion& motion) { return mirrored(motion, left_right_pairs(motion.skeleton)); },
+          "The movement seen in a mirror at x = 0: left and right joints change places.");
+}
+
+void bind_motion_files(py::module_& m) {
+  using release = py::call_guard<py::gil_scoped_release>;
+  m.def("read_motion", &read_motion, py::arg("path"), py::kw_only(), py::arg("amc_rate_hz") = 120.0,
+        py::arg("unit_m") = py::none(), py::arg("up") = "y", py::arg("asf") = py::none(),
+        py::arg("allow_no_frames") = false, release(),
+        R"doc(The file's motion on its own skeleton, and warnings. Raises FormatError.
+
+unit_m: metres a unit of the file (None: what an .asf says, 0.01 for .bvh); up: the file's up
+axis, what is read has y up; asf: the skeleton of an .amc (None: the one found beside it). With
+allow_no_frames a skeleton alone, also an .asf, is a motion without frames.)doc");
+  m.def("write_bvh", &write_bvh, py::arg("path"), py::arg("motion"), release(),
+        "Writes atomically, in centimetres.");
+  m.def(
+      "write_acclaim", &write_acclaim, py::arg("path"), py::arg("motion"), release(),
+      R"doc(Writes path (.amc) and the skeleton beside it (.asf), each atomically, in inches / 0.45.
+
+Offsets of joints become fixed bones. Raises FormatError for what Acclaim cannot hold.)doc");
+}
+
 }  // namespace
 
 void bind_motion(py::module_& m) {
-  using release = py::call_guard<py::gil_scoped_release>;
-  py::class_<Skeleton>(m, "Skeleton")
-      .def_property_readonly("names",
-                             [](const Skeleton& s) {
-                               std::vector<std::string> names;
-                               for (const auto& joint : s.joints()) names.push_back(joint.name);
-                               return names;
-                             })
-      .def_property_readonly("parents",
-                             [](const Skeleton& s) {
-                               std::vector<int> parents;
-                               for (const auto& joint : s.joints()) parents.push_back(joint.parent);
-                               return parents;
-                             })
-      .def_property_readonly("offsets",
-                             [](const Skeleton& s) { return vectors(s, &Joint::offset_parent); })
-      .def_property_readonly("bones", [](const Skeleton& s) { return vectors(s, &Joint::bone); });
-
-  py::class_<Motion>(m, "Motion")
-      .def(py::init(&make_motion), py::arg("skeleton"), py::arg("frame_time_s"),
-           py::arg("root_positions"), py::arg("rotations"))
-      .def_property_readonly("skeleton", [](const Motion& motion) { return motion.skeleton; })
-      .def_readonly("frame_time_s", &Motion::frame_time_s)
-      .def_property_readonly("num_frames", &Motion::num_frames)
-      .def_property_readonly("root_positions", &root_positions)
-      .def_property_readonly("rotations", &rotations)
-      .def_property_readonly("offset_tracks", &offset_tracks)
-      .def("joint_positions", &positions_of, py::arg("frame") = "world")
-      .def("pivot_positions", &pivots_of)
-      .def("resampled", &resampled, py::arg("rate_hz"), release())
-      .def("trimmed", &trimmed, py::arg("begin"), py::arg("end"))
-      .def("reversed", &reversed)
-      .def("mirrored", [](const Motion& motion) {
-        return mirrored(motion, left_right_pairs(motion.skeleton));
-      });
-
-  m.def("read_motion", &read_motion, py::arg("path"), py::kw_only(), py::arg("amc_rate_hz") = 120.0,
-        py::arg("unit_m") = py::none(), py::arg("up") = "y", py::arg("asf") = py::none(),
-        py::arg("allow_no_frames") = false, release());
-  m.def("write_bvh", &write_bvh, py::arg("path"), py::arg("motion"), release());
-  m.def("write_acclaim", &write_acclaim, py::arg("path"), py::arg("motion"), release());
+  bind_skeleton(m);
+  bind_motion_class(m);
+  bind_motion_files(m);
 }
 
 }  // namespace sparse_mocap::python

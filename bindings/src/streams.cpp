@@ -154,68 +154,79 @@ py::list encode(StreamEncoder& encoder, double time_s, std::int64_t counter,
 }
 
 void bind_parser(py::module_& m) {
-  py::class_<SharedParser>(m, "StreamParser")
+  using Shared = SharedParser;
+  py::class_<Shared>(
+      m, "StreamParser",
+      R"doc(Turns a device's bytes into samples; options are those of driver_options. Thread-safe.
+
+Raises ConfigError for an unknown driver or option, naming the nearest, and for wrong values.)doc")
       .def(py::init([](const std::string& driver, const py::kwargs& options) {
-             return std::make_unique<SharedParser>(make_parser(driver, options_of(options)));
+             return std::make_unique<Shared>(make_parser(driver, options_of(options)));
            }),
            py::arg("driver"))
-      .def("feed", &SharedParser::feed, py::arg("data"), py::arg("sender") = py::none())
-      .def("reset",
-           [](SharedParser& shared) { shared.with_parser([](auto& parser) { parser.reset(); }); })
-      .def("begin_message",
-           [](SharedParser& shared) {
-             shared.with_parser([](auto& parser) { parser.begin_message(); });
-           })
-      .def("interrupt",
-           [](SharedParser& shared) {
-             shared.with_parser([](auto& parser) { parser.interrupt(); });
-           })
-      .def("pop_replies",
-           [](SharedParser& shared) {
-             return list_of(asked(shared, [](auto& parser) { return parser.pop_replies(); }));
-           })
-      .def_property_readonly("counters", &counters_of)
-      .def_property_readonly("sensor_names",
-                             [](SharedParser& shared) {
-                               return asked(shared,
-                                            [](auto& parser) { return parser.sensor_names(); });
-                             })
-      .def_property_readonly("last_message", [](SharedParser& shared) {
-        return asked(shared, [](auto& parser) { return parser.last_message(); });
-      });
+      .def(
+          "feed", &Shared::feed, py::arg("data"), py::arg("sender") = py::none(),
+          R"doc(The samples (N) that the bytes complete, however they are cut; NaN for what is absent.
+
+``sensor`` (N,) index into sensor_names; ``time_s`` (N,) the device's clock, unwrapped;
+``counter`` (N,) unwrapped, -1 for none; ``specific_force`` (N, 3) m/s^2;
+``angular_velocity`` (N, 3) rad/s; ``orientation`` (N, 4) R_world_sensor, world y up;
+``magnetic_field`` (N, 3) in the device's unit; ``flags`` (N,) of SAMPLE_FLAGS.
+With a sender the data are one datagram.)doc")
+      .def(
+          "reset", [](Shared& shared) { shared.with_parser([](auto& p) { p.reset(); }); },
+          "The connection was reopened: sensors keep their indices, counters continue.")
+      .def(
+          "begin_message",
+          [](Shared& shared) { shared.with_parser([](auto& p) { p.begin_message(); }); },
+          "After reset: the line was idle for so long that the next byte begins a message.")
+      .def(
+          "interrupt", [](Shared& shared) { shared.with_parser([](auto& p) { p.interrupt(); }); },
+          "Bytes are missing before the next ones: an incomplete message is dropped.")
+      .def(
+          "pop_replies",
+          [](Shared& shared) {
+            return list_of(asked(shared, [](auto& p) { return p.pop_replies(); }));
+          },
+          "The answers that the protocol expects, each once.")
+      .def_property_readonly("counters", &counters_of,
+                             "What was received and what was lost, each kind by its name.")
+      .def_property_readonly(
+          "sensor_names",
+          [](Shared& shared) { return asked(shared, [](auto& p) { return p.sensor_names(); }); },
+          "The sensors seen so far, in the order of their indices.")
+      .def_property_readonly(
+          "last_message",
+          [](Shared& shared) { return asked(shared, [](auto& p) { return p.last_message(); }); },
+          "The last text from the device, such as an error.");
 }
 
 void bind_encoder(py::module_& m) {
-  py::class_<StreamEncoder>(m, "StreamEncoder")
+  py::class_<StreamEncoder>(m, "StreamEncoder", "What a device with these sensors would send.")
       .def(py::init([](const std::string& driver, const std::vector<std::string>& sensor_names,
                        const py::kwargs& options) {
              return make_encoder(driver, options_of(options), sensor_names);
            }),
            py::arg("driver"), py::arg("sensor_names"))
-      .def("hello", [](StreamEncoder& encoder) { return list_of(encoder.hello()); })
+      .def(
+          "hello", [](StreamEncoder& encoder) { return list_of(encoder.hello()); },
+          "What the device sends of its own accord when it starts.")
       .def("encode", &encode, py::arg("time_s"), py::arg("counter"), py::arg("specific_force"),
            py::arg("angular_velocity") = py::none(), py::arg("orientation") = py::none(),
-           py::arg("sensors") = py::none())
+           py::arg("sensors") = py::none(),
+           R"doc(The packets of one instant: (S, 3) m/s^2, (S, 3) rad/s, (S, 4) R_world_sensor.
+
+sensors: whose rows these are; all sensors' when None.)doc")
       .def(
           "respond",
           [](StreamEncoder& encoder, const py::bytes& from_host) {
             return bytes_of(encoder.respond(view_of(from_host)));
           },
-          py::arg("from_host"));
+          py::arg("from_host"), "What the device answers to what a host sends it.");
 }
 
-}  // namespace
-
-void bind_streams(py::module_& m) {
-  bind_parser(m);
-  bind_encoder(m);
-  py::dict flags;
-  flags["clipped"] = static_cast<int>(kClipped);
-  flags["after_gap"] = static_cast<int>(kAfterGap);
-  flags["after_reset"] = static_cast<int>(kAfterReset);
-  flags["gravity_restored"] = static_cast<int>(kGravityRestored);
-  m.attr("SAMPLE_FLAGS") = flags;
-  m.def("driver_names", &driver_names);
+void bind_drivers(py::module_& m) {
+  m.def("driver_names", &driver_names, "The protocols that StreamParser takes.");
   m.def(
       "driver_options",
       [](const std::string& driver) {
@@ -224,19 +235,33 @@ void bind_streams(py::module_& m) {
           options[spec.name] = {spec.default_value, spec.description};
         return options;
       },
-      py::arg("driver"));
+      py::arg("driver"), "Each option's default and what it means.");
   m.def(
       "start_commands",
       [](const std::string& driver, const py::kwargs& options) {
         return list_of(start_commands(driver, options_of(options)));
       },
-      py::arg("driver"));
+      py::arg("driver"), "What makes the device stream, to be sent one after the other.");
   m.def(
       "keep_alive_commands",
       [](const std::string& driver, const py::kwargs& options) {
         return list_of(keep_alive_commands(driver, options_of(options)));
       },
-      py::arg("driver"));
+      py::arg("driver"), "What must be sent every second for the device to go on.");
+}
+
+}  // namespace
+
+void bind_streams(py::module_& m) {
+  bind_parser(m);
+  bind_encoder(m);
+  bind_drivers(m);
+  py::dict flags;
+  flags["clipped"] = static_cast<int>(kClipped);
+  flags["after_gap"] = static_cast<int>(kAfterGap);
+  flags["after_reset"] = static_cast<int>(kAfterReset);
+  flags["gravity_restored"] = static_cast<int>(kGravityRestored);
+  m.attr("SAMPLE_FLAGS") = flags;
 }
 
 }  // namespace sparse_mocap::python

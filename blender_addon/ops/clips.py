@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The clips of the motion database: preview one, keep it in the scene."""
 
+from collections.abc import Callable
+
 import bpy
 from bpy.props import BoolProperty, IntProperty
 from bpy.types import Context, Event, Operator
@@ -15,6 +17,12 @@ from ..session.errors import InputError, one_line
 
 class _ClipOperator:
     """Mix-in: calls do() and reports its message, or the error in one line."""
+
+    report: Callable[[set[str], str], None]  # the operator's own
+
+    def do(self, context: Context) -> str:
+        """What is asked for; returns one line that says so."""
+        raise NotImplementedError
 
     def execute(self, context: Context) -> set[str]:
         """Call do() and report."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
@@ -30,6 +31,8 @@ class JobOperator:
     _job: Job | None = None
     _slices: Slices[str] | None = None
     _timer: Any = None
+    report: Callable[[set[str], str], None]  # the operator's own
+    properties: Any  # the operator's own
 
     def prepare(self, context: Context) -> Job:
         """The job. Raises InputError or the error of a file."""
@@ -97,11 +100,10 @@ class JobOperator:
         if job.is_running or compat.is_busy(context):
             return {"PASS_THROUGH"}
         try:
-            if self._slices is None:
-                self._begin_slices(context, self.apply(context, job.result()))
-            if not self._slices.advance(_SLICE_S):
+            slices = self._slices or self._begin_slices(context, self.apply(context, job.result()))
+            if not slices.advance(_SLICE_S):
                 return {"RUNNING_MODAL"}
-            message = self._slices.result
+            message = slices.result or ""
             self._end(context)
             return self._finished(message)
         except Exception as error:
@@ -114,12 +116,13 @@ class JobOperator:
             self._job.cancel()
         self._end(context)
 
-    def _begin_slices(self, context: Context, steps: Steps[str]) -> None:
+    def _begin_slices(self, context: Context, steps: Steps[str]) -> Slices[str]:
         """Switch to a faster timer."""
-        self._slices = Slices(steps)
+        slices = self._slices = Slices(steps)
         manager = context.window_manager
         manager.event_timer_remove(self._timer)
         self._timer = manager.event_timer_add(_TICK_S / 10.0, window=context.window)
+        return slices
 
     def _show_progress(self, context: Context, job: Job) -> None:
         slices = self._slices

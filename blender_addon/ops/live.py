@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import bpy
@@ -37,6 +38,8 @@ def connected() -> LiveSession:
 
 class _NowOperator:
     """Mix-in: act() does the work at once; its message or error is reported in one line."""
+
+    report: Callable[[set[str], str], None]  # the operator's own
 
     def act(self, context: Context) -> str:
         raise NotImplementedError

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The skeleton mapping: remembered for a skeleton, saved to a file, loaded from one."""
 
+from collections.abc import Callable
+
 import bpy
 from bpy.props import BoolProperty, StringProperty
 from bpy.types import Context, Event, Operator
@@ -14,6 +16,12 @@ SKIP = {"HIDDEN", "SKIP_SAVE"}
 
 class _MappingOperator:
     """Mix-in: calls do() and reports its message, or the error in one line."""
+
+    report: Callable[[set[str], str], None]  # the operator's own
+
+    def do(self, context: Context) -> str:
+        """What is asked for; returns one line that says so."""
+        raise NotImplementedError
 
     def execute(self, context: Context) -> set[str]:
         """Call do() and report."""

@@ -21,7 +21,7 @@ LOCATION, ROTATION = "location", "rotation_quaternion"
 
 
 def frames_of(
-    scene: Scene, times_s: NDArray[np.float64], start_frame: float
+    scene: Scene, times_s: NDArray[np.floating[Any]], start_frame: float
 ) -> NDArray[np.float64]:
     """(T,) the scene's frames, usually fractional, at these times."""
     return start_frame + times_s * (scene.render.fps / scene.render.fps_base)

@@ -10,7 +10,7 @@ from typing import Any
 
 import bpy
 import numpy as np
-from bpy.types import Armature, Context, Object, Scene
+from bpy.types import Armature, Context, EditBone, Object, Scene
 from mathutils import Vector
 
 from ..session.errors import InputError
@@ -243,7 +243,7 @@ def _tail(joint: int, parents: list[int], pivots: Floats, ends: Floats, size: fl
 
 def _add_bones(data: Armature, bones: RestBones, scale: float) -> None:
     """Make the bones; data is in edit mode."""
-    made = []
+    made: list[EditBone] = []
     for name, parent, head, tail in zip(
         bones.names,
         bones.parents,

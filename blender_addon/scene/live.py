@@ -68,7 +68,9 @@ def follow(rig: Rig) -> None:
 def followed() -> Object | None:
     """The armature that shows the live poses; None when it is gone."""
     armature = bpy.data.objects.get(_target) if _target else None
-    return armature if is_ours(armature) and armature.library is None else None
+    if armature is None or not is_ours(armature) or armature.library is not None:
+        return None
+    return armature
 
 
 def ensure_ticking() -> None:

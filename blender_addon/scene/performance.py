@@ -78,6 +78,6 @@ def facts_of(action: Action) -> Facts | None:
 
 def performed_action(obj: Object | None) -> Action | None:
     """The action that a Sparse Mocap armature plays."""
-    if not is_ours(obj) or obj.animation_data is None:
+    if obj is None or not is_ours(obj) or obj.animation_data is None:
         return None
     return obj.animation_data.action

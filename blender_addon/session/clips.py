@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -52,9 +52,9 @@ class ClipTable:
 
     def _order(self, key: str) -> tuple[int, ...]:
         """For each clip, its rank when sorted by name, length or actor."""
-        columns = {
-            "name": lambda row: row.label.lower(),
-            "length": lambda row: row.length_s,
+        columns: dict[str, Callable[[ClipRow], tuple[str, ...] | tuple[float]]] = {
+            "name": lambda row: (row.label.lower(),),
+            "length": lambda row: (row.length_s,),
             "actor": lambda row: (row.actor.lower(), row.label.lower()),
         }
         value = columns[key]

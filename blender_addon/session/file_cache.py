@@ -43,9 +43,10 @@ class FileCache(Generic[T]):
         """The opened file. Raises InputError, OSError or FormatError."""
         stamp = self._stamp(path)
         entry = self._entry
-        is_known = entry is not None and (entry.path, entry.stamp) == (path, stamp)
-        if is_known and entry.value is not None:
-            return entry.value
+        if entry is not None and (entry.path, entry.stamp) == (path, stamp):
+            opened = entry.value
+            if opened is not None:
+                return opened
         value = self._load(path)
         self._store(Entry(path, stamp, value))
         return value
@@ -60,7 +61,8 @@ class FileCache(Generic[T]):
             entry = self._entry
             if entry is not None and (entry.path, entry.stamp) == (path, stamp):
                 return entry
-            self._entry = opening = Entry(path, stamp)
+            opening: Entry[T] = Entry(path, stamp)
+            self._entry = opening
             self._threads = [thread for thread in self._threads if thread.is_alive()]
             thread = threading.Thread(target=self._open, args=(opening,), daemon=True)
             self._threads.append(thread)

@@ -18,7 +18,8 @@ def finished(steps: Steps[T]) -> T:
         try:
             next(steps)
         except StopIteration as end:
-            return end.value
+            result: T = end.value
+            return result
 
 
 def part(steps: Steps[T], begin: float, share: float) -> Steps[T]:
@@ -27,7 +28,8 @@ def part(steps: Steps[T], begin: float, share: float) -> Steps[T]:
         while True:
             yield begin + share * next(steps)
     except StopIteration as end:
-        return end.value
+        result: T = end.value
+        return result
     finally:
         steps.close()
 

@@ -55,11 +55,11 @@ def _contents(layout: UILayout, context: Context, path: str) -> None:
     if entry.is_opening:
         layout.label(text="Loading the calibration", icon="SORTTIME")
         redraw_soon()
-    elif entry.error:
+    elif (calibration := entry.value) is None:
         text.error(layout, context, entry.error)
     else:
-        text.facts(layout, [_row(sensor) for sensor in entry.value.sensors.values()])
-        for note in entry.value.notes:
+        text.facts(layout, [_row(sensor) for sensor in calibration.sensors.values()])
+        for note in calibration.notes:
             text.paragraph(layout, context, note, icon="INFO")
 
 

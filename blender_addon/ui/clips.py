@@ -75,7 +75,7 @@ class SPARSEMOCAP_PT_clips(StepPanel, Panel):
     def draw(self, context: Context) -> None:
         """The list, and the buttons for the selected clip."""
         database = opened_database(context)
-        if not is_listed(context, database):
+        if database is None or not is_listed(context, database):
             self.layout.label(text="Listing the clips", icon="SORTTIME")
             later(_fill)
             return

@@ -124,10 +124,9 @@ def _contents(layout: UILayout, context: Context, settings: SPARSEMOCAP_PG_setti
     if entry.is_opening:
         layout.label(text="Opening the database", icon="SORTTIME")
         redraw_soon()
-    elif entry.error:
+    elif (database := entry.value) is None:
         text.error(layout, context, entry.error)
     else:
-        database = entry.value
         text.facts(
             layout,
             [

@@ -11,7 +11,7 @@ from bpy.types import Context, UILayout
 
 from ..scene import compat
 from ..session.core import missing_reason
-from ..session.imported import USUAL_SIZES_M, FileSummary, file_summaries
+from ..session.imported import USUAL_SIZES_M, file_summaries
 from . import text
 from .step import redraw_soon
 
@@ -84,10 +84,9 @@ def _draw_summary(
     if entry.is_opening:
         layout.label(text="Reading the file", icon="SORTTIME")
         redraw_soon()
-    elif entry.error:
+    elif (summary := entry.value) is None:
         text.error(layout, context, entry.error)
     else:
-        summary: FileSummary = entry.value
         size_m = summary.size_with(unit)
         rows = [("Joints", str(summary.num_joints))]
         if summary.num_frames > 0:

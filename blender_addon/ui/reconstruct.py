@@ -87,7 +87,7 @@ def _performed(layout: UILayout, context: Context) -> None:
     """What the active armature performs."""
     action = performed_action(context.view_layer.objects.active)
     facts = None if action is None else facts_of(action)
-    if facts is not None:
+    if action is not None and facts is not None:
         first, last = action.frame_range
         rows = [
             ("Action", action.name),

@@ -46,10 +46,9 @@ def _contents(layout: UILayout, context: Context, path: str) -> None:
     if entry.is_opening:
         layout.label(text="Loading the take", icon="SORTTIME")
         redraw_soon()
-    elif entry.error:
+    elif (take := entry.value) is None:
         text.error(layout, context, entry.error)
     else:
-        take = entry.value
         text.facts(
             layout,
             [

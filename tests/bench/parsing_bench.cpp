@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Reading motion files, beside a reader that only calls strtod. Recorded files where they are at
-// hand (see tests/core/formats/format_test_support.hpp), else one made here. The label is the file;
+// hand (see tests/core/support/real_data.hpp), else one made here. The label is the file;
 // parsing_bench.py times a public Python reader on it.
 #include <benchmark/benchmark.h>
 
@@ -14,6 +14,7 @@
 #include "sparse_mocap/formats/acclaim.hpp"
 #include "sparse_mocap/formats/acclaim_writer.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
+#include "support/real_data.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap {
@@ -23,11 +24,7 @@ namespace fs = std::filesystem;
 
 // The recorded file, or the motion made here in the same format.
 fs::path motion_file(const std::string& recorded) {
-  const char* variable = std::getenv("SPARSE_MOCAP_DATA");
-  const fs::path folder = variable != nullptr
-                              ? fs::path(variable)
-                              : fs::path(SPARSE_MOCAP_SOURCE_DIR) / "../shared/data";
-  if (fs::exists(folder / recorded)) return fs::canonical(folder / recorded);
+  if (const auto path = testing::real_data(recorded); !path.empty()) return fs::canonical(path);
   const auto made =
       fs::path(SPARSE_MOCAP_BENCH_DIR) / ("made" + fs::path(recorded).extension().string());
   const auto motion = testing::swaying_motion(testing::template_skeleton(), 1, 5000, 120.0);

@@ -20,7 +20,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path[:0] = [str(ROOT), str(HERE)]
+sys.path[:0] = [str(ROOT), str(HERE), str(HERE.parent)]
 sys.path.append(str(ROOT / "bindings"))  # unless PYTHONPATH names another one
 
 import bpy  # noqa: E402 - as a module it must be imported before its submodules

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from real_data import NOT_SET, real_data_folder
 
 import blender_addon
 
@@ -24,6 +25,14 @@ ADDON = "blender_addon"
 
 class Skipped(Exception):
     """The test cannot run here; str() says why."""
+
+
+def real_data() -> Path:
+    """The folder of recorded motions and sensors. Raises Skipped where it is not at hand."""
+    folder = real_data_folder()
+    if folder is None:
+        raise Skipped(NOT_SET)
+    return folder
 
 
 @dataclass(frozen=True)

@@ -3,14 +3,12 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import bpy
 import numpy as np
-from support import Skipped, evaluated_pivots, in_blenders_axes, library
+from support import Skipped, evaluated_pivots, in_blenders_axes, library, real_data
 
-ROOT = Path(__file__).resolve().parents[2]
 CENTIMETRE = 0.01
 FLOATS_M = 1e-4  # what Blender's single precision leaves after a chain of bones
 
@@ -45,11 +43,8 @@ def test_blenders_importer_agrees_on_generated_motion() -> None:
 
 
 def test_blenders_importer_agrees_on_files_of_many_exporters() -> None:
-    named = os.environ.get("SPARSE_MOCAP_DATA")
-    folder = Path(named) if named else ROOT.parent / "shared" / "data"
-    if not folder.is_dir():
-        raise Skipped(f"no recorded motion capture at {folder}; SPARSE_MOCAP_DATA may name it")
-    sources = sorted(path for path in (folder / "bvh_exporters").iterdir() if path.is_dir())
+    folder = real_data() / "bvh_exporters"
+    sources = sorted(path for path in folder.iterdir() if path.is_dir())
     assert len(sources) > 10
     for source in sources:
         check(min(source.rglob("*.bvh"), key=lambda path: path.stat().st_size))

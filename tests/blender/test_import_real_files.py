@@ -1,23 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """File > Import on files of many exporters, where they are at hand."""
 
-import os
-from pathlib import Path
-
 import bpy
-from support import Skipped
+from support import real_data
 from test_import import _check_acclaim, _check_bvh
 
-DATA = Path(
-    os.environ.get("SPARSE_MOCAP_DATA") or Path(__file__).resolve().parents[3] / "shared" / "data"
-)
 RATES = ((24, 1.0), (25, 1.0), (30, 1.001), (60, 1.0))
 
 
 def _files(pattern):
-    if not DATA.is_dir():
-        raise Skipped(f"no recorded motion capture at {DATA}; SPARSE_MOCAP_DATA may name it")
-    files = sorted(DATA.glob(pattern))
+    files = sorted(real_data().glob(pattern))
     assert files, pattern
     return files
 

@@ -206,8 +206,10 @@ def test_disconnecting_leaves_a_capture_that_others_need(tmp_path):
     with connected(tmp_path):
         [capture] = _captures()
         other = CaptureClient(capture)
+        session = addon("session.live").current()
         assert bpy.ops.sparse_mocap.disconnect_sensors() == {"FINISHED"}
         assert addon("session.live").current() is None
+        until(lambda: not session.is_running)
         other.skip()
         until(lambda: len(other.read()) > 0)
         assert other.leave()

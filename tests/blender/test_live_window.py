@@ -35,7 +35,7 @@ def test_the_armature_is_live_while_the_timeline_plays(tmp_path):
         arguments = [port, str(library().database), str(tmp_path), str(serial)]
         done = subprocess.run(
             [bpy.app.binary_path, *options, "--python", str(SCRIPT), "--", *arguments],
-            env={**os.environ, **own}, capture_output=True, text=True, timeout=120,
+            env={**os.environ, **own}, capture_output=True, text=True, timeout=240,
         )  # fmt: skip
         print(done.stdout)
         assert done.returncode == 0, done.stdout + done.stderr

@@ -27,7 +27,7 @@ def _in_window(scenario: str, tmp_path: Path) -> None:
             env={**os.environ, **own},
             capture_output=True,
             text=True,
-            timeout=100,
+            timeout=240,
         )
     assert done.returncode == 0, done.stdout + done.stderr
     assert "Traceback" not in done.stdout + done.stderr, done.stdout + done.stderr

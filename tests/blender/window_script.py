@@ -27,11 +27,16 @@ Steps = Iterator[float]
 
 
 def slow_down(pause_s: float) -> None:
-    """Let every progress of a job take that long, so that it runs while something happens."""
+    """Let every progress of a job take that long, so that it runs while something happens.
+
+    Unless the job is cancelled meanwhile.
+    """
     on_progress = jobs.Job._on_progress
 
     def slow(self: jobs.Job, *args: object) -> bool:
-        time.sleep(pause_s)
+        end = time.monotonic() + pause_s
+        while time.monotonic() < end and not self.is_cancelled:
+            time.sleep(0.01)
         return on_progress(self, *args)
 
     jobs.Job._on_progress = slow
@@ -53,7 +58,7 @@ def start(operator: Callable[..., set[str]], **options: object) -> jobs.Job:
 
 
 def start_building() -> jobs.Job:
-    slow_down(1.0)
+    slow_down(TIMEOUT_S)
     path = str(Path(FOLDER) / "new.smdb")
     return start(bpy.ops.sparse_mocap.build_database, source=MOTIONS, filepath=path, mirror=True)
 

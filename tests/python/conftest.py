@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 import sys
@@ -13,10 +12,10 @@ from pathlib import Path
 import pytest
 import sparse_mocap
 from click.testing import CliRunner, Result
+from real_data import NOT_SET, real_data_folder
 from sparse_mocap.cli.app import app
 from sparse_mocap_demo.generator import generate_library, generate_performance
 
-ROOT = Path(__file__).resolve().parents[2]
 ACTORS = ("ada", "bruno")
 CLIPS = ("walk_01", "walk_02", "squat_01", "squat_02", "kickleft_01", "kickright_01")
 
@@ -67,11 +66,10 @@ def take_path(performance: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
 
 @pytest.fixture(scope="session")
 def real_data() -> Path:
-    """The folder of recorded motion capture, which is no part of the repository."""
-    named = os.environ.get("SPARSE_MOCAP_DATA")
-    folder = Path(named) if named else ROOT.parent / "shared" / "data"
-    if not folder.is_dir():
-        pytest.skip(f"no recorded motion capture at {folder}; SPARSE_MOCAP_DATA may name it")
+    """The folder of recorded motions and sensors, which are no part of the repository."""
+    folder = real_data_folder()
+    if folder is None:
+        pytest.skip(NOT_SET)
     return folder
 
 

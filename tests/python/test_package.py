@@ -3,30 +3,18 @@
 
 from __future__ import annotations
 
-import ast
 import platform
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 import sparse_mocap
-from sparse_mocap import _core
-
-PACKAGE = Path(sparse_mocap.__file__).parent
 
 
 def run_python(code: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
     )
-
-
-def stub() -> ast.Module:
-    """All parts of the stub as one."""
-    parts = [path.read_text(encoding="utf-8") for path in sorted(PACKAGE.glob("_core*.pyi"))]
-    assert len(parts) > 1
-    return ast.parse("\n".join(parts))
 
 
 def test_every_public_name_is_there() -> None:
@@ -38,32 +26,6 @@ def test_every_public_name_is_there() -> None:
 def test_an_unknown_name_is_an_attribute_error() -> None:
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         sparse_mocap.nothing  # noqa: B018
-
-
-def test_the_core_has_every_function_and_class_of_its_stub() -> None:
-    names = [node.name for node in stub().body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
-    assert len(names) > 20
-    public = [name for name in names if not name.startswith("_")]
-    assert [name for name in public if not hasattr(_core, name)] == []
-
-
-def test_the_core_has_every_member_of_its_stub() -> None:
-    missing = []
-    for node in stub().body:
-        if not isinstance(node, ast.ClassDef) or node.name.endswith(("Error", "Cancelled")):
-            continue
-        if node.name.startswith("_"):  # a type of the stub alone
-            continue
-        for member in node.body:
-            if isinstance(member, ast.FunctionDef):
-                name = member.name
-            elif isinstance(member, ast.AnnAssign) and isinstance(member.target, ast.Name):
-                name = member.target.id
-            else:
-                continue
-            if not hasattr(getattr(_core, node.name), name):
-                missing.append(f"{node.name}.{name}")
-    assert missing == []
 
 
 def test_without_a_core_one_line_names_this_python() -> None:

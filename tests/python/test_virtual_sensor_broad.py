@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The virtual sensor against a real one: an IMU whose place and orientation cameras recorded.
 
-BROAD (Laidig, Caruso, Cereatti, Seel 2021) is not in the repository; it is looked for in
-../shared/data or where SPARSE_MOCAP_DATA points.
+The recordings are those of BROAD (Laidig, Caruso, Cereatti, Seel 2021).
 """
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +18,6 @@ Rotation = pytest.importorskip("scipy.spatial.transform").Rotation
 
 Floats = NDArray[np.float64]
 
-ROOT = Path(__file__).resolve().parents[2]
-BROAD = Path(os.environ.get("SPARSE_MOCAP_DATA", ROOT / "../shared/data")) / "imu" / "broad"
 TRIALS = (
     "08_undisturbed_fast_rotation_with_breaks_A",
     "15_undisturbed_fast_translation_A",
@@ -50,11 +46,12 @@ def correlation(a: Floats, b: Floats) -> float:
     return float(np.corrcoef(a.ravel(), b.ravel())[0, 1])
 
 
-@pytest.mark.skipif(not BROAD.is_dir(), reason="no imu/broad; see SPARSE_MOCAP_DATA")
 @pytest.mark.parametrize("trial", TRIALS)
-def test_the_virtual_sensor_reads_what_a_real_one_reads(trial: str, performance: Path) -> None:
+def test_the_virtual_sensor_reads_what_a_real_one_reads(
+    trial: str, real_data: Path, performance: Path
+) -> None:
     skeleton = sparse_mocap.standard_motion(sparse_mocap.read_motion(performance)[0])[0].skeleton
-    data = loadmat(BROAD / f"{trial}.mat", squeeze_me=True)
+    data = loadmat(real_data / "imu" / "broad" / f"{trial}.mat", squeeze_me=True)
     rate_hz = float(data["sampling_rate"])
     times = np.arange(len(data["imu_acc"])) / rate_hz
     # Where the cameras lost the sensor, it is bridged, and not compared.

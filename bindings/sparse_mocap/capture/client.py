@@ -22,6 +22,8 @@ from .errors import CaptureError
 from .sample_log import SampleLogReader, Samples
 from .session import Connection, Session, read_session, session_path, sessions
 
+__all__ = ["CaptureClient", "start_capture"]
+
 START_TIMEOUT_S = 20.0
 OUTPUT_NAME = "output.log"
 

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+__all__ = ["CaptureConfig", "LinkConfig"]
+
 DEFAULT_BAUD = 115200
 CONFIG_NAME = "config.json"
 

@@ -11,6 +11,8 @@ from .config import CaptureConfig, LinkConfig
 from .drivers import keep_alive_commands, make_parser, parsed, site_order, start_commands
 from .sample_log import Samples
 
+__all__ = ["Decoded", "Decoder", "Sensor"]
+
 IDLE_S = 0.2
 """If the first byte arrives this long after the port was opened, it starts a message: devices send
 a message without pauses, and adapters delay bytes by only about 20 ms."""

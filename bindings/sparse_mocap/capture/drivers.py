@@ -14,6 +14,17 @@ from .. import keep_alive_commands as _keep_alive_commands
 from .. import start_commands as _start_commands
 from .sample_log import SAMPLE, Samples
 
+__all__ = [
+    "Encoder",
+    "can_share_a_port",
+    "keep_alive_commands",
+    "make_parser",
+    "parsed",
+    "site_order",
+    "start_commands",
+    "with_rate",
+]
+
 DATAGRAM_DRIVERS = ("slimevr",)
 """On a serial port their datagrams are sent as [u16 length, big-endian][datagram]."""
 
@@ -73,7 +84,7 @@ class Encoder:
             samples["specific_force"].astype(np.float64),
             samples["angular_velocity"].astype(np.float64),
             samples["orientation"].astype(np.float64),
-            samples["sensor"].astype(np.int64),
+            samples["sensor"].tolist(),
         )
         self._counter += 1
         return [self._framed(packet) for packet in packets]

@@ -25,6 +25,8 @@ from .drivers import Encoder, can_share_a_port, with_rate
 from .errors import CaptureError
 from .sample_log import SAMPLE, Samples
 
+__all__ = ["Emulator", "Faults", "Line", "instants", "period_s"]
+
 _LONGEST_SLEEP_S = 0.05
 _DRAIN_S = 2.0
 _GREETING_S = 0.3
@@ -139,7 +141,7 @@ class Emulator:
         self._start_s = 0.0
         self._random = random.Random(self.faults.seed)
         count = len(self.take.sensors)
-        groups = [(index,) for index in range(count)]
+        groups: list[tuple[int, ...]] = [(index,) for index in range(count)]
         self._settings = with_rate(self.driver, self.options, 1.0 / period_s(self.take))
         if can_share_a_port(self.driver, self.take.sites, self._settings):
             groups = [tuple(range(count))]

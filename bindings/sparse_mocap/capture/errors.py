@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+__all__ = ["CaptureError", "LogError", "PortError", "RecordingError"]
+
 
 class CaptureError(Exception):
     """A capture cannot be started, reached or used."""

@@ -18,6 +18,8 @@ from .config import LinkConfig
 from .errors import LogError, PortError
 from .ports import PORT_ERRORS, READ_TIMEOUT_S, PortInfo, device_at, open_port, port_of
 
+__all__ = ["Arrived", "Link", "Sink", "State"]
+
 FIRST_BACKOFF_S = 0.1
 LONGEST_BACKOFF_S = 1.0
 """So that a recording continues within 2 s after plugging in again."""

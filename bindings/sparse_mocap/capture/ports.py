@@ -17,6 +17,8 @@ from serial.tools import list_ports
 from .errors import PortError
 from .udp_port import SCHEME, UdpPort
 
+__all__ = ["PortInfo", "available_ports", "device_at", "is_url", "open_port", "port_of"]
+
 try:
     import termios
 

@@ -21,6 +21,8 @@ from .raw_log import Kind, Record, sent_by
 from .rolling_log import RollingLog
 from .sample_log import SampleLogWriter, Samples
 
+__all__ = ["Recorder", "Recording"]
+
 SILENT_S = 0.1
 """A sensor without a sample for longer than this is reported as silent."""
 _RATE_WINDOW = 5  # ticks

@@ -18,6 +18,8 @@ from .errors import RecordingError
 from .raw_log import BEGUN, FILE_NAME, Kind, Record, read_log
 from .sample_log import SAMPLE, Samples
 
+__all__ = ["Gap", "RecordedTake", "recording_to_take"]
+
 Floats = NDArray[np.float64]
 
 GAP_S = 0.25

@@ -17,6 +17,8 @@ from typing import Any
 
 from .raw_log import BEGUN, RawLogWriter, Record, log_path
 
+__all__ = ["KeptLog"]
+
 FULL_BYTES = 16 << 20
 """Size at which a file is full: five minutes of six sensors at 200 Hz."""
 MOST_SPARE = 2

@@ -10,6 +10,7 @@ deleted, as old ones are while nothing is recorded.
 
 from __future__ import annotations
 
+import io
 import os
 import re
 from contextlib import suppress
@@ -19,6 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .raw_log import check_magic
+
+__all__ = ["SampleLogReader", "SampleLogWriter", "log_path"]
 
 MAGIC = b"SMSAMPL1"
 FILE_NAME = "samples.bin"
@@ -51,6 +54,8 @@ def log_path(folder: Path, number: int) -> Path:
 
 class SampleLogWriter:
     """Appends samples to a new log."""
+
+    _file: io.FileIO
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -94,6 +99,8 @@ class SampleLogWriter:
 
 class SampleLogReader:
     """Reads a log from a given sample on, while it is being written."""
+
+    _file: io.FileIO
 
     def __init__(self, folder: Path, position: int = 0) -> None:
         self._folder = folder

@@ -20,6 +20,8 @@ from typing import Any
 from .recorder import Recorder
 from .session import Session, write_session
 
+__all__ = ["Server"]
+
 TICK_S = 0.5
 _LONGEST_REQUEST = 1 << 16
 _MOST_CLIENTS = 32

@@ -20,6 +20,16 @@ from typing import Any
 
 from ..files import write_text
 
+__all__ = [
+    "Connection",
+    "Session",
+    "read_session",
+    "runtime_folder",
+    "session_path",
+    "sessions",
+    "write_session",
+]
+
 FOLDER_VARIABLE = "SPARSE_MOCAP_RUNTIME"
 ANSWER_TIMEOUT_S = 5.0
 _LONGEST_LINE = 1 << 20

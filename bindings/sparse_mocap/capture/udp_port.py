@@ -6,6 +6,8 @@ from __future__ import annotations
 import socket
 from urllib.parse import urlsplit
 
+__all__ = ["UdpPort"]
+
 SCHEME = "udp://"
 _LONGEST_DATAGRAM = 65_536
 _MOST_SENDERS = 64

@@ -12,6 +12,8 @@ import click
 
 from .faults import Fault, as_faults
 
+__all__ = ["app", "run"]
+
 _COMMANDS = {
     "body": ".body:body",
     "calibrate": ".calibrate:calibrate_command",

@@ -16,6 +16,8 @@ from ..take import Take
 from .console import print_table, warn
 from .options import FilePath, Sites, Span, check_ending, position_along_bone_option
 
+__all__ = ["Movement", "Shake", "calibrate_command"]
+
 
 class Movement(click.ParamType):  # type: ignore[type-arg]
     """A guided movement and its time span."""

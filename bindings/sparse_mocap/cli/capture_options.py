@@ -12,6 +12,8 @@ from ..capture.config import DEFAULT_BAUD, CaptureConfig, LinkConfig
 from ..capture.drivers import driver_names
 from .options import Decorator, Sites
 
+__all__ = ["Span", "capture_options", "config_of"]
+
 
 class Span(click.ParamType):  # type: ignore[type-arg]
     """A time span, as duration and begin."""

@@ -27,6 +27,17 @@ from rich.table import Table
 from .. import ProgressReport
 from ..files import write_text
 
+__all__ = [
+    "figures_of",
+    "import_bar",
+    "interrupted",
+    "print_table",
+    "progress_bar",
+    "status_line",
+    "warn",
+    "write_json",
+]
+
 ProgressCallback = Callable[[int, int, str], bool]
 DetailsCallback = Callable[[ProgressReport], None]
 

@@ -19,6 +19,8 @@ from .. import (
 from .console import warn
 from .options import FilePath, check_ending, frame_option
 
+__all__ = ["convert"]
+
 
 @click.command()
 @click.argument("clip", metavar="CLIP", type=FilePath)

@@ -24,6 +24,8 @@ from .console import import_bar, warn
 from .database_info import described, show
 from .options import FilePath
 
+__all__ = ["add", "build", "database", "drop", "info"]
+
 _IMPORT_OPTIONS = (
     click.option(
         "--exclude", metavar="GLOB", multiple=True,
@@ -100,6 +102,8 @@ def build(
     SOURCE is a .bvh or .amc file, or a folder, which is searched recursively. An .amc needs its
     .asf in the same folder.
     """
+    if no_tempo_copies:
+        options["tempo_copies"] = ()
     with import_bar("Building") as (progress, details):
         report = build_database(
             list(sources),
@@ -110,7 +114,6 @@ def build(
             progress=progress,
             details=details,
             **options,
-            **({"tempo_copies": ()} if no_tempo_copies else {}),
         )
     _print(output, report, fps)
 

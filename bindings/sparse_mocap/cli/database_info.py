@@ -13,6 +13,8 @@ import click
 
 from .. import Clip, FormatError, MotionDatabase
 
+__all__ = ["described", "is_copy", "show"]
+
 _ARRAYS = (
     "angles", "positions", "root_motion", "contacts", "specific_force_pivot", "specific_force_end",
     "angular_velocity", "up",

@@ -13,6 +13,8 @@ from .capture_options import Span, driver_option, driver_options_option
 from .console import interrupted
 from .options import FilePath, noise_option
 
+__all__ = ["emulate"]
+
 
 @click.command()
 @click.argument("take_path", metavar="TAKE.csv", type=FilePath)

@@ -9,6 +9,8 @@ from typing import IO, Any
 
 import click
 
+__all__ = ["Fault", "Stopped", "as_faults"]
+
 
 class Fault(click.ClickException):
     """Wrong input; shown as one line without a traceback."""

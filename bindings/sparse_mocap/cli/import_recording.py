@@ -13,6 +13,8 @@ from ..imports import read_recording, recording_formats
 from .console import warn
 from .options import FilePath, Sites, check_ending
 
+__all__ = ["SensorSite", "import_recording"]
+
 
 class SensorSite(click.ParamType):  # type: ignore[type-arg]
     """A sensor of a recording and its location."""

@@ -20,6 +20,8 @@ from .console import print_table, progress_bar, write_json
 from .faults import Fault
 from .options import FilePath
 
+__all__ = ["inspect"]
+
 
 @click.command("inspect")
 @click.argument("sources", metavar="SOURCE...", type=FilePath, nargs=-1, required=True)

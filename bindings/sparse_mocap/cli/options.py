@@ -16,6 +16,8 @@ from .. import noise_presets, site_names
 from ..methods import DEFAULT_METHOD, MethodInfo, method_info, methods, renamed_preset
 from .console import warn
 
+__all__ = ["Place", "Sites", "Span", "check_ending", "check_presets", "places_of"]
+
 PAPER_SITES = "left_wrist,right_wrist,left_ankle,right_ankle"
 
 FilePath = click.Path(path_type=Path)

@@ -11,6 +11,8 @@ from rich.table import Table
 from ..capture.ports import PortInfo, available_ports
 from .console import print_table
 
+__all__ = ["ports"]
+
 
 @click.command()
 @click.option("--json", "as_json", is_flag=True, help="Print as JSON.")

@@ -22,6 +22,8 @@ from .capture_options import capture_options, config_of
 from .console import interrupted, status_line, warn
 from .options import FilePath, check_ending
 
+__all__ = ["attached", "record"]
+
 FIRST_SAMPLE_TIMEOUT_S = 20.0
 _POLL_S = 0.1
 

@@ -21,6 +21,8 @@ from .options import (
     seed_option,
 )
 
+__all__ = ["simulate"]
+
 
 @click.command()
 @click.argument("clip", metavar="CLIP", type=FilePath)

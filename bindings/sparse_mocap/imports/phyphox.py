@@ -8,6 +8,8 @@ import numpy as np
 from ..take import SensorRecord
 from .tables import RecordingError, Table, Text, check_finite, interpolated, read_table
 
+__all__ = ["read"]
+
 NAME = "phyphox CSV"
 
 _TIME = "Time (s)"
@@ -24,7 +26,7 @@ def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
     tables = [table for text in texts if (table := _table(text)) is not None]
     if not tables:
         return None
-    force_names = ()
+    force_names: tuple[str, ...] = ()
     for table in tables:
         for names in _FORCES:
             if table.has(*names) and not force_names:

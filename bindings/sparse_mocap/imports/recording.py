@@ -14,6 +14,8 @@ from ..take import SensorRecord, Take, read_take
 from . import phyphox, sensor_logger, ximu3, xsens_dot, xsens_mt_manager
 from .tables import RecordingError, Text, find_line, read_texts, shown
 
+__all__ = ["read_recording", "recording_formats"]
+
 Reader = Callable[[list[Text], list[str]], dict[str, SensorRecord] | None]
 
 

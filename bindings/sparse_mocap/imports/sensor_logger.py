@@ -19,6 +19,8 @@ from .tables import (
     read_table,
 )
 
+__all__ = ["read"]
+
 NAME = "Sensor Logger CSV"
 
 _TIME = "seconds_elapsed"

@@ -15,6 +15,21 @@ from numpy.typing import NDArray
 
 from ..table_errors import TableError
 
+__all__ = [
+    "RecordingError",
+    "Table",
+    "Text",
+    "check_finite",
+    "find_line",
+    "interpolated",
+    "interpolated_orientation",
+    "normalised",
+    "read_table",
+    "read_texts",
+    "shown",
+    "unwrapped",
+]
+
 Floats = NDArray[np.float64]
 
 _ENDINGS = (".csv", ".txt", ".json")
@@ -128,7 +143,9 @@ def unwrapped(counts: Floats, bits: int) -> Floats:
     """Returns the unwrapped counts of a counter of a few bits."""
     steps = np.diff(counts)
     wrap = 2.0**bits
-    return counts + np.concatenate([[0.0], np.cumsum(np.where(steps < -wrap / 2, wrap, 0.0))])
+    wraps = np.cumsum(np.where(steps < -wrap / 2, wrap, 0.0))
+    going_on: Floats = counts + np.concatenate([[0.0], wraps])
+    return going_on
 
 
 def interpolated(wanted_s: Floats, times_s: Floats, values: Floats) -> Floats:

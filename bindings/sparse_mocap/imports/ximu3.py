@@ -14,6 +14,8 @@ from ..take import SensorRecord
 from .gravity import STANDARD_GRAVITY_MPS2
 from .tables import Text, check_finite, find_line, read_table
 
+__all__ = ["read"]
+
 NAME = "x-IMU3 log folder"
 
 _TIME = "Timestamp (us)"

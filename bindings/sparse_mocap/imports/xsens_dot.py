@@ -21,6 +21,8 @@ from .tables import (
     unwrapped,
 )
 
+__all__ = ["read"]
+
 NAME = "Movella DOT CSV"
 
 _QUATERNION = ("Quat_W", "Quat_X", "Quat_Y", "Quat_Z")

@@ -21,6 +21,8 @@ from .tables import (
     unwrapped,
 )
 
+__all__ = ["read"]
+
 NAME = "Xsens MT Manager text"
 
 _FORCE = ("Acc_X", "Acc_Y", "Acc_Z")

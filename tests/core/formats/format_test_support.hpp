@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -12,6 +11,7 @@
 
 #include "sparse_mocap/formats/motion_file.hpp"
 #include "support/invariants.hpp"
+#include "support/real_data.hpp"
 
 namespace sparse_mocap::testing {
 
@@ -85,19 +85,5 @@ inline std::string replaced(std::string text, const std::string& from, const std
   EXPECT_NE(at, std::string::npos) << from;
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
-
-// The real recordings that lie beside the repository; empty when they are not there.
-inline std::filesystem::path real_data(const std::string& name) {
-  const char* variable = std::getenv("SPARSE_MOCAP_DATA");
-  const std::filesystem::path folder =
-      variable != nullptr ? std::filesystem::path(variable)
-                          : std::filesystem::path(SPARSE_MOCAP_SOURCE_DIR) / "../shared/data";
-  const auto path = folder / name;
-  return std::filesystem::exists(path) ? path : std::filesystem::path();
-}
-
-#define SKIP_WITHOUT_REAL_DATA(name)                    \
-  if (::sparse_mocap::testing::real_data(name).empty()) \
-  GTEST_SKIP() << "no " << name << " in ../shared/data; set SPARSE_MOCAP_DATA to its folder"
 
 }  // namespace sparse_mocap::testing

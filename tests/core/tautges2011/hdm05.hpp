@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Real motions, where they are; see format_test_support.hpp.
+// Real motions, where they are; see support/real_data.hpp.
 #pragma once
 
 #include <algorithm>

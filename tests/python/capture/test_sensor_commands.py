@@ -50,6 +50,12 @@ def first_line(process: subprocess.Popen[str]) -> str:
     return process.stdout.readline().strip()
 
 
+def has_socket(pid: int) -> bool:
+    """Whether the process has connected to something."""
+    files = [path for path in Path(f"/proc/{pid}/fd").iterdir() if path.is_symlink()]
+    return any(str(path.readlink()).startswith("socket:") for path in files)
+
+
 @pytest.fixture
 def played(tmp_path: Path) -> tuple[Take, Path]:
     take, path = some_take(3.0), tmp_path / "played.csv"
@@ -132,7 +138,8 @@ def test_a_recording_whose_command_was_killed_is_taken_up_again(
     assert f"already recording; continue it with --attach {session.pid}" in again.stderr
     time.sleep(3.0)
     attached = start("record", "--attach", "-o", tmp_path / "own.csv")
-    time.sleep(1.5)
+    until(lambda: has_socket(attached.pid))
+    time.sleep(1.0)
     attached.send_signal(signal.SIGINT)
     _, err = attached.communicate(timeout=20)
     assert attached.returncode == 0, err

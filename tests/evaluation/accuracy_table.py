@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes ACCURACY.md: how far reconstructions are off on a folder of recorded motion.
+
+accuracy_table.py FOLDER [-o ACCURACY.md] [--json-folder DIR]
+
+Runs `sparse-mocap evaluate` on FOLDER for a known performer (scenario 1) and an unknown one
+(scenario 3), with and without gyroscopes, online and offline. What it writes depends on the
+data and the code alone: the same ones give the same bytes. With --json-folder the JSON of each
+evaluation is kept there, and what is there already is not run again.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+ACCURACY = Path(__file__).with_name("ACCURACY.md")
+SCENARIOS = {1: "known performer", 3: "unknown performer"}
+BASELINES = {
+    "oracle": "oracle",
+    "playback": "playback of the best path in the database",
+    "window of 10": "nearest window of ten readings",
+    "mean pose": "the clip's own mean pose, held still",
+}
+
+Evaluation = dict[str, Any]
+"""What `sparse-mocap evaluate --json` writes."""
+
+HEAD = """# Accuracy
+
+How far reconstructed joints are off. `./dev accuracy FOLDER` writes this file; the figures of the
+README come from here.
+
+- Error: RMS over the joints in the heading frame (root position and heading removed), mean over
+  each clip's frames, then over clips.
+- Known performer (scenario 1): the database holds other clips of the performer, never the test
+  clip or a copy of it. Unknown performer (scenario 3): it holds none of the performer's clips.
+- Online: each frame from what was read until then and shortly after (latency). Offline: each frame
+  from the whole take.
+- Oracle: the nearest pose in the database, chosen by looking at the truth.
+"""
+
+
+def evaluate(folder: Path, scenario: int, gyroscopes: bool, kept: Path) -> Evaluation:
+    """Run one evaluation, unless its JSON is kept."""
+    path = kept / f"scenario_{scenario}{'_gyroscopes' if gyroscopes else ''}.json"
+    if not path.exists():
+        command = [sys.executable, "-m", "sparse_mocap", "evaluate", "--offline"]
+        command += ["--database-source", str(folder), "--scenario", str(scenario)]
+        command += ["--json", str(path), "--cache", str(kept)] + ["--gyroscopes"] * gyroscopes
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    found: Evaluation = json.loads(path.read_text(encoding="utf-8"))
+    return found
+
+
+def label(method: str) -> str:
+    """The method's name in a table: `default`, online."""
+    if method in BASELINES:
+        return BASELINES[method]
+    name, _, how = method.partition(", ")
+    return f"`{name}`, {how or 'online'}"
+
+
+def row(cells: Iterable[str]) -> str:
+    """One line of a table."""
+    return "|" + "".join(f" {cell} |".replace("  ", " ") for cell in cells)
+
+
+def head(cells: Sequence[str]) -> list[str]:
+    """The head of a table; all columns but the first hold figures."""
+    return [row(cells), "|---" + "|---:" * (len(cells) - 1) + "|"]
+
+
+def summary(evaluations: dict[int, Evaluation], suffix: str, skip: Sequence[str]) -> list[str]:
+    """The mean errors in cm, a column a scenario."""
+    methods = next(iter(evaluations.values()))["methods"]
+    lines = []
+    for method in methods:
+        if method not in skip:
+            means = [found["methods"][method]["mean_cm"] for found in evaluations.values()]
+            lines.append(row([label(method) + suffix, *(f"{mean:.1f}" for mean in means)]))
+    return lines
+
+
+def details(found: Evaluation) -> list[str]:
+    """All figures of one evaluation, and the errors of each class of movement."""
+    lines = head(["cm", "mean", "median", "90 %", "jerk km/s³", "latency ms"])
+    for method, figures in found["methods"].items():
+        errors = (f"{figures[key]:.2f}" for key in ("mean_cm", "median_cm", "p90_cm"))
+        late = figures["latency_ms"]
+        late_ms = "" if late is None else f"{late:.0f}"
+        lines.append(row([label(method), *errors, f"{figures['jerk_kmps3']:.3f}", late_ms]))
+    lines += ["", *head(["mean, cm", *map(label, found["methods"])])]
+    for name in next(iter(found["methods"].values()))["class_errors_cm"]:
+        errors = (f"{m['class_errors_cm'][name]:.1f}" for m in found["methods"].values())
+        lines.append(row([name, *errors]))
+    return lines
+
+
+def setting(found: Evaluation) -> str:
+    """What was performed, and by whom; what was worn."""
+    settings, tests = found["settings"], found["tests"]
+    actors = {test["actor"] for test in tests}
+    classes = {test["motion_class"] for test in tests}
+    worn = ", ".join(site.replace("_", " ") for site in settings["sites"])
+    return (
+        f"Data: `{Path(settings['source']).name}`; {len(tests)} clips performed, of "
+        f"{len(actors)} performers and {len(classes)} kinds of movement;\n"
+        f"a database of {settings['frames']:,} frames at {settings['rate_hz']:g} Hz. "
+        f"Method: `{settings['method']}`.\n"
+        f"Simulated sensors, noise {settings['noise']}: {worn}."
+    )
+
+
+def document(evaluations: Iterable[Evaluation]) -> str:
+    """ACCURACY.md. Raises ValueError if a scenario is missing."""
+    found = {(e["settings"]["with_gyroscopes"], e["scenario"]): e for e in evaluations}
+    for scenario in SCENARIOS:
+        if (False, scenario) not in found:
+            raise ValueError(f"there is no evaluation of scenario {scenario} without gyroscopes")
+    plain = {scenario: found[False, scenario] for scenario in SCENARIOS}
+    lines = [HEAD, setting(plain[1]), "", "Mean error in cm:", "", *head(["", *SCENARIOS.values()])]
+    lines += summary(plain, "", ())
+    if all((True, scenario) in found for scenario in SCENARIOS):
+        inertial = {scenario: found[True, scenario] for scenario in SCENARIOS}
+        lines += summary(inertial, ", with gyroscopes", tuple(BASELINES))
+    for gyroscopes, scenario in sorted(found):
+        worn = "accelerometers and gyroscopes" if gyroscopes else "accelerometers"
+        lines += ["", f"## {SCENARIOS[scenario].capitalize()}, {worn}", ""]
+        lines += details(found[gyroscopes, scenario])
+    return "\n".join(lines) + "\n"
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Evaluate and write."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("folder", type=Path, help="recorded motion, HDM05 for the file kept here")
+    parser.add_argument("-o", "--output", type=Path, default=ACCURACY)
+    parser.add_argument("--json-folder", type=Path, help="keeps what each evaluation found")
+    given = parser.parse_args(arguments)
+    with tempfile.TemporaryDirectory(prefix="sparse_mocap_") as temporary:
+        kept = given.json_folder or Path(temporary)
+        kept.mkdir(parents=True, exist_ok=True)
+        evaluations = [
+            evaluate(given.folder, scenario, gyroscopes, kept)
+            for gyroscopes in (False, True)
+            for scenario in SCENARIOS
+        ]
+        given.output.write_text(document(evaluations), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
