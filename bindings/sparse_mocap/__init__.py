@@ -33,8 +33,8 @@ if TYPE_CHECKING:
         MotionDatabase,
         PoseEstimate,
         ProgressReport,
-        ReadingStream,
         Readings,
+        ReadingStream,
         Reconstruction,
         SensorInput,
         SensorRecording,
@@ -86,9 +86,9 @@ if TYPE_CHECKING:
     from .calibration_file import read_calibration, write_calibration
     from .databases import add_to_database, build_database
     from .mappings import forget_mapping, mapping_folder, remember_mapping, to_standard
+    from .methods import MethodInfo, OptionInfo, method_info
     from .noise import NoiseModel, noise_presets, noisy
     from .positions import read_positions, write_positions
-    from .methods import MethodInfo, OptionInfo, method_info
     from .reconstruction import LiveReconstructor, reconstruct
     from .take import SensorRecord, Take, TakeError, read_take, simulated, write_take
 

@@ -10,6 +10,8 @@ import numpy as np
 from ._core import ConfigError, align_in_time
 from .take import SensorRecord, Take
 
+__all__ = ["AlignmentError", "aligned"]
+
 
 class AlignmentError(ConfigError):
     """Sensors saw nothing in common; str() is one line."""

@@ -27,6 +27,8 @@ from .files import write_text
 from .mappings import to_standard
 from .table_errors import TableError, read_lines
 
+__all__ = ["BodyFileError", "body_of_motion", "read_body", "write_body"]
+
 FilePath = str | os.PathLike[str]
 
 _FORMAT, _VERSION = "sparse_mocap_body", 1

@@ -17,6 +17,8 @@ from .calibration import Calibration, SensorCalibration
 from .files import write_text
 from .table_errors import TableError, read_lines
 
+__all__ = ["CalibrationFileError", "read_calibration", "write_calibration"]
+
 Path = str | os.PathLike[str]
 
 _FORMAT = "sparse_mocap_calibration"

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     from ._core_database import _ImportOptions
 
+__all__ = ["add_to_database", "build_database"]
+
 Path = str | os.PathLike[str]
 
 

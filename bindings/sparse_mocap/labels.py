@@ -20,6 +20,8 @@ from typing import NamedTuple
 from ._core import named_motion_files
 from .table_errors import TableError, read_lines
 
+__all__ = ["LabelRow", "Labels", "find_labels", "read_labels"]
+
 TABLE_NAME = "metadata.csv"
 """The table that is read where it lies in a source folder."""
 COLUMNS = ("file", "actor", "class", "source", "license")

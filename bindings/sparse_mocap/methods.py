@@ -118,8 +118,10 @@ def renamed_preset(method: str | None, preset: str | None) -> tuple[str | None, 
     if preset == "paper" and method in (None, DEFAULT_METHOD):
         return "tautges2011", None, "--preset paper is now --method tautges2011"
     if preset == "default" and method == "tautges2011":
-        return DEFAULT_METHOD, None, (
-            "--method tautges2011 --preset default is now --method path_regression"
+        return (
+            DEFAULT_METHOD,
+            None,
+            ("--method tautges2011 --preset default is now --method path_regression"),
         )
     return method, preset, ""
 

@@ -39,7 +39,8 @@ def channels_in(record: SensorRecord) -> list[str]:
 def measured_channels(status: Mapping[str, Any]) -> list[str]:
     """Returns what a live sensor measures, by its entry in the capture's status."""
     turns = ["angular_velocity", "gravity_direction"] if status["has_gyroscope"] else []
-    return ["specific_force", *turns]
+    orientation = ["orientation"] if status["has_orientation"] else []
+    return ["specific_force", *turns, *orientation]
 
 
 def all_readings(

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _core
-from ._core import Model, MotionDatabase, PoseEstimate, Reconstruction, Skeleton
+from ._core import Model, MotionDatabase, PoseEstimate, Reconstruction, SensorInput, Skeleton
 from .calibration import Calibration, sensor_inputs
 from .methods import option_values
 from .readings import channels_in, push_samples
@@ -64,21 +64,9 @@ def reconstruct(
         tracker_yaw_rad=tracker_yaw_rad,
         tracker_origin_m=tracker_origin_m,
     )
-    records = list(take.sensors.values())
-    channels = [_used(channels_in(record), use_gyroscopes) for record in records]
-    inputs = sensor_inputs(calibration, take.sites, channels, positions_along_bone)
-    recordings = [
-        _core.SensorRecording(
-            record.times_s,
-            record.specific_force,
-            record.angular_velocity,
-            record.position,
-            record.orientation,
-        )
-        for record in records
-    ]
+    inputs = _inputs(take, calibration, positions_along_bone, use_gyroscopes)
     return _core.reconstruct(
-        recordings, inputs, request, best_quality=best_quality, progress=progress
+        _recordings(take), inputs, request, best_quality=best_quality, progress=progress
     )
 
 
@@ -175,6 +163,29 @@ def _request(
         database=database,
         **rest,
     )
+
+
+def _inputs(
+    take: Take,
+    calibration: Calibration | None,
+    positions_along_bone: Mapping[str, float] | None,
+    use_gyroscopes: bool,
+) -> list[SensorInput]:
+    channels = [_used(channels_in(record), use_gyroscopes) for record in take.sensors.values()]
+    return sensor_inputs(calibration, take.sites, channels, positions_along_bone)
+
+
+def _recordings(take: Take) -> list[_core.SensorRecording]:
+    return [
+        _core.SensorRecording(
+            record.times_s,
+            record.specific_force,
+            record.angular_velocity,
+            record.position,
+            record.orientation,
+        )
+        for record in take.sensors.values()
+    ]
 
 
 def _used(channels: Sequence[str], use_gyroscopes: bool) -> list[str]:

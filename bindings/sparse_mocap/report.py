@@ -15,8 +15,6 @@ from .take import Take
 Floats = NDArray[np.float64]
 
 __all__ = [
-    "FAIR_BELOW_MPS2",
-    "GOOD_BELOW_MPS2",
     "LARGEST_MISFIT",
     "LiveMatch",
     "is_unlike_the_database",
@@ -90,7 +88,7 @@ class LiveMatch:
 
     @property
     def match(self) -> str:
-        """"good", "fair" or "poor"; empty before there are poses."""
+        """How well they match, as match_of() says; empty before there are poses."""
         return match_of(float(np.mean(self._misfits))) if self._misfits else ""
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from . import Motion, ReadingStream, SensorInput, simulate
+from . import Motion, simulate
 from .table_errors import TakeError
 from .take_file import read_columns, write_columns
 

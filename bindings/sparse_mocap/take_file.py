@@ -15,6 +15,8 @@ from . import site_names
 from .files import write_text
 from .table_errors import TakeError, read_lines
 
+__all__ = ["TakeColumns", "read_columns", "write_columns"]
+
 Floats = NDArray[np.float64]
 Names = NDArray[np.str_]
 Path = str | os.PathLike[str]

@@ -210,7 +210,7 @@ void bind_encoder(py::module_& m) {
            py::arg("driver"), py::arg("sensor_names"))
       .def(
           "hello", [](StreamEncoder& encoder) { return list_of(encoder.hello()); },
-          "What the device sends of its own accord when it starts.")
+          "What the device sends when it starts.")
       .def("encode", &encode, py::arg("time_s"), py::arg("counter"), py::arg("specific_force"),
            py::arg("angular_velocity") = py::none(), py::arg("orientation") = py::none(),
            py::arg("sensors") = py::none(),
@@ -247,7 +247,7 @@ void bind_drivers(py::module_& m) {
       [](const std::string& driver, const py::kwargs& options) {
         return list_of(keep_alive_commands(driver, options_of(options)));
       },
-      py::arg("driver"), "What must be sent every second for the device to go on.");
+      py::arg("driver"), "What must be sent every second to keep the device streaming.");
 }
 
 }  // namespace

@@ -109,9 +109,7 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
     )
     take: StringProperty(name="Take", description="The recorded take (.csv) to reconstruct")
     method: EnumProperty(name="Method", description="How motion is reconstructed", items=_methods)
-    preset: EnumProperty(
-        name="Preset", description="The settings of the method", items=_presets
-    )
+    preset: EnumProperty(name="Preset", description="The settings of the method", items=_presets)
     options: CollectionProperty(type=SPARSEMOCAP_PG_option)
     offline: BoolProperty(
         name="Best quality",

@@ -57,8 +57,8 @@ class LiveSession:
         self._state = LiveState()
         self._pose: Pose | None = None
         self._is_pose_new = False
-        self._wanted: tuple[Database, str, Any] | None = None
-        self._active: tuple[Database, str, Any] | None = None
+        self._wanted: tuple[Database, MethodChoice, Any] | None = None
+        self._active: tuple[Database, MethodChoice, Any] | None = None
         self._poses: LivePoses | None = None
         self._sites: dict[int, str] = {}
         self._channels: list[list[str]] = []
@@ -85,9 +85,7 @@ class LiveSession:
             self._thread.join(STOP_WITHIN_S)
         return not self._thread.is_alive()
 
-    def go_live(
-        self, database: Database, choice: MethodChoice, calibration: Any = None
-    ) -> None:
+    def go_live(self, database: Database, choice: MethodChoice, calibration: Any = None) -> None:
         """Start the live preview. calibration: as for LivePoses."""
         self._wanted = (database, choice, calibration)
 

@@ -92,9 +92,7 @@ class LivePoses:
         if not self.latencies_s:
             return Quality(num_skipped=num_skipped)
         middle, worst = np.quantile(self.latencies_s, [0.5, 0.99])
-        return Quality(
-            self._num_poses, num_skipped, self._match.match, float(middle), float(worst)
-        )
+        return Quality(self._num_poses, num_skipped, self._match.match, float(middle), float(worst))
 
     def _pose(self, estimate: Any) -> Pose:
         self._num_poses += 1

@@ -377,7 +377,7 @@ def test_the_command_line_calibrates_and_reconstructs(
     result = cli("reconstruct", "--database", database_path, take, "-o", tmp_path / "m.bvh",
                  "--calibration", out, "--json", report)  # fmt: skip
     assert result.exit_code == 0, result.output
-    places = json.loads(report.read_text(encoding="utf-8"))["options"]["places"]
+    places = json.loads(report.read_text(encoding="utf-8"))["options"]["positions_along_bone"]
     assert places[2] == 0.4
     assert places[0] == pytest.approx(wearer.places["left_wrist"], abs=0.1)
 

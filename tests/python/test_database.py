@@ -25,10 +25,10 @@ ARRAYS = {
     "positions": 63,
     "root_motion": 4,
     "contacts": 2,
-    "specific_force_pivot": 33,
-    "specific_force_end": 33,
-    "angular_velocity": 33,
-    "up": 33,
+    "specific_force_pivot": 42,
+    "specific_force_end": 42,
+    "angular_velocity": 42,
+    "up": 42,
 }
 
 

@@ -206,7 +206,9 @@ def test_an_actor_without_other_clips_is_left_out_of_scenario_2(
     (tmp_path / "ada_walk_01.bvh").write_bytes((library / "ada_walk_01.bvh").read_bytes())
     for name in ("bruno_walk_01.bvh", "bruno_squat_01.bvh"):
         (tmp_path / name).write_bytes((library / name).read_bytes())
-    result = cli("evaluate", "--database-source", tmp_path, "--scenario", 2, "--method", "path_regression")
+    result = cli(
+        "evaluate", "--database-source", tmp_path, "--scenario", 2, "--method", "path_regression"
+    )
     assert result.exit_code == 0, result.output
     assert "warning: not tested: ada_walk_01" in result.stderr
     assert "2 clips" in result.stdout
@@ -241,9 +243,7 @@ def test_hidden_is_as_good_as_absent(
 ) -> None:
     """The evaluation's figure is that of the commands on a database built without the clip."""
     name = "bruno_walk_01.bvh"
-    settings = Settings(
-        1, tuple(contenders((method,))), tests=name, with_gyroscopes=gyroscopes
-    )
+    settings = Settings(1, tuple(contenders((method,))), tests=name, with_gyroscopes=gyroscopes)
     (test,) = evaluate(database, library, settings).tests
     path = {what: tmp_path / what for what in ("db.smdb", "take.csv", "o.bvh", "o.csv", "t.csv")}
     for words in (
@@ -274,7 +274,9 @@ def test_noise_is_part_of_the_evaluation(database: MotionDatabase, library: Path
     assert clean.clip_means_cm("path_regression") != dirty.clip_means_cm("path_regression")
 
 
-def test_a_papers_comparison_is_run_variant_by_variant(library: Path, tmp_path: Path, cli: Cli) -> None:
+def test_a_papers_comparison_is_run_variant_by_variant(
+    library: Path, tmp_path: Path, cli: Cli
+) -> None:
     result = cli(
         "evaluate", "--database-source", library, "--scenario", 1, "--experiment", "prior",
         "--tests", "ada_walk_01.bvh", "--json", tmp_path / "e.json",

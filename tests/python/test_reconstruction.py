@@ -32,8 +32,13 @@ from sparse_mocap.methods import method_info, methods, option_values, renamed_pr
 from sparse_mocap.readings import SensorInput, all_readings
 from sparse_mocap.report import match_of, unit_warnings
 
-WAYS = [(m.name, best) for m in methods() for best in (False, True)
-        if m.needs == ("database",) and (m.works_on_whole_takes if best else m.works_live)]  # fmt: skip
+WAYS = [
+    (method.name, best)
+    for method in methods()
+    for best in (False, True)
+    if method.needs == ("database",)
+    and (method.works_on_whole_takes if best else method.works_live)
+]
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +66,7 @@ def shortened(take: Take, seconds: float, sites: Sequence[str] = ()) -> Take:
 
 
 def test_methods_say_what_they_are() -> None:
-    assert [method.name for method in methods()][0] == "path_regression"
+    assert methods()[0].name == "path_regression"
     assert method_info("tautges2011").paper
     assert not method_info("tautges2011").works_on_whole_takes
     for method in methods():
@@ -140,7 +145,9 @@ def test_live_poses_are_those_of_the_whole_take(database: MotionDatabase, short:
     estimates += live.flush()
     assert len(estimates) == len(solved.readings)
     assert live.num_skipped == 0
-    np.testing.assert_allclose([one.time_s for one in estimates], solved.readings.times_s, atol=1e-3)
+    np.testing.assert_allclose(
+        [one.time_s for one in estimates], solved.readings.times_s, atol=1e-3
+    )
     difference = np.array([one.positions for one in estimates]) - np.asarray(
         solved.motion.joint_positions("heading")
     )
@@ -297,9 +304,7 @@ def test_the_nearest_window_is_the_nearest(database: MotionDatabase, readings: R
     np.testing.assert_allclose(got, distances.min(axis=1), atol=1e-4)
 
 
-def test_played_back_frames_are_the_databases(
-    database: MotionDatabase, readings: Readings
-) -> None:
+def test_played_back_frames_are_the_databases(database: MotionDatabase, readings: Readings) -> None:
     found = playback_best_path(database, readings, [0, 1, 2])
     assert len(found) == len(readings)
     hidden = database.clips[2].end

@@ -14,9 +14,16 @@ from sparse_mocap import (
     TakeError,
     filtered_at,
     read_take,
-    resampled,
     write_take,
 )
+from sparse_mocap.readings import SensorInput, all_readings
+
+
+def resampled(take: Take, rate_hz: float) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the readings' times (T,) and specific forces (T, S, 3)."""
+    readings = all_readings(take, [SensorInput(site) for site in take.sites], rate_hz)
+    return readings.times_s, readings.specific_force
+
 
 HEADER = "time_s,sensor,ax,ay,az\n"
 

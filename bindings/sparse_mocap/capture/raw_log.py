@@ -36,7 +36,16 @@ from enum import IntEnum
 from pathlib import Path
 from typing import Any, BinaryIO
 
-__all__ = ["Kind", "RawLogWriter", "Record", "log_path", "read_log", "read_records", "sent_by"]
+__all__ = [
+    "Kind",
+    "RawLogWriter",
+    "Record",
+    "check_magic",
+    "log_path",
+    "read_log",
+    "read_records",
+    "sent_by",
+]
 
 MAGIC = b"SMRAWLG1"
 FILE_NAME = "raw.log"

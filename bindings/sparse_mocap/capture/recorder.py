@@ -55,6 +55,7 @@ class Recorder:
         self._last: dict[int, Any] = {}
         self._num_of: dict[int, int] = {}
         self._with_gyroscope: set[int] = set()
+        self._with_orientation: set[int] = set()
         self._rates: deque[tuple[float, dict[int, int]]] = deque(maxlen=_RATE_WINDOW)
         self.recording: Recording | None = None
         self.num_recordings = 0
@@ -205,6 +206,8 @@ class Recorder:
             rate = own["angular_velocity"]
             if (np.isfinite(rate) & (rate != 0.0)).any():
                 self._with_gyroscope.add(sensor)
+            if np.isfinite(own["orientation"]).any():
+                self._with_orientation.add(sensor)
 
     def _log_new_sensors(self) -> None:
         sensors = self._decoder.sensors
@@ -234,6 +237,7 @@ class Recorder:
             "samples": self._num_of.get(index, 0), "missing": sensor.num_missing,
             "rate_hz": self._rate(index), "age_s": None, "specific_force": None,
             "state": "silent", "flags": 0, "has_gyroscope": index in self._with_gyroscope,
+            "has_orientation": index in self._with_orientation,
         }  # fmt: skip
         if last is not None:
             age_s = (now_ns - int(last["arrival_ns"])) * 1e-9

@@ -17,7 +17,7 @@ from typing import Any
 
 from .raw_log import BEGUN, RawLogWriter, Record, log_path
 
-__all__ = ["KeptLog"]
+__all__ = ["RollingLog"]
 
 FULL_BYTES = 16 << 20
 """Size at which a file is full: five minutes of six sensors at 200 Hz."""

@@ -11,6 +11,8 @@ from .. import body_of_height
 from ..body_file import body_of_motion, write_body
 from .options import FilePath, check_ending
 
+__all__ = ["body"]
+
 
 @click.command()
 @click.argument("clip", metavar="[CLIP]", required=False, type=FilePath)

@@ -24,7 +24,7 @@ from .console import import_bar, warn
 from .database_info import described, show
 from .options import FilePath
 
-__all__ = ["add", "build", "database", "drop", "info"]
+__all__ = ["add", "build", "database", "drop", "info_command"]
 
 _IMPORT_OPTIONS = (
     click.option(

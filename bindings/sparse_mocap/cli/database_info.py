@@ -168,10 +168,10 @@ def show(info: Mapping[str, Any]) -> None:
         click.echo(
             f"warning  {warning['kind']}: {warning['count']} times in {warning['num_files']} files"
         )
-    for model in told["models"]:
+    for model in info["models"]:
         click.echo(f"model    {_model_line(model)}")
-    if told["other_arrays"]:
-        click.echo(f"further  {_listed(list(map(_tensor_text, told['other_arrays'])))}")
+    if info["other_arrays"]:
+        click.echo(f"further  {_listed(list(map(_tensor_text, info['other_arrays'])))}")
     for kind in ("skipped", "duplicates"):
         files = info[kind]
         for file in files[:_MOST_FILES]:

@@ -30,6 +30,8 @@ from ..methods import DEFAULT_METHOD, Experiment, method_info, methods, renamed_
 from .console import ProgressCallback, print_table, progress_bar, warn, write_json
 from .options import PAPER_SITES, FilePath, Sites, noise_option, seed_option, set_option
 
+__all__ = ["evaluate"]
+
 
 @click.command()
 @click.option(
@@ -148,9 +150,7 @@ def _contenders(
     )
 
 
-def _experiments(
-    names: Sequence[str], wanted: Sequence[str]
-) -> list[tuple[str, Experiment]]:
+def _experiments(names: Sequence[str], wanted: Sequence[str]) -> list[tuple[str, Experiment]]:
     """Returns the experiments named, all when none is, with their methods."""
     known = [
         (method.name, experiment)

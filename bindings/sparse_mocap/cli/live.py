@@ -15,8 +15,7 @@ import click
 from rich.console import Console
 from rich.live import Live
 
-from .. import MotionDatabase, read_model
-from ..body_file import read_body
+from .. import MotionDatabase
 from ..calibration_file import read_calibration
 from ..capture.client import CaptureClient, start_capture
 from ..capture.errors import CaptureError
@@ -33,8 +32,10 @@ from .options import (
     preset_option,
     set_option,
 )
-from .reconstruct import model_of, require_given
+from .reconstruct import body_of, model_of, require_given
 from .record import FIRST_SAMPLE_TIMEOUT_S, attached
+
+__all__ = ["live"]
 
 _LOOK_S = 0.01
 _SHOW_S = 0.2
@@ -98,7 +99,7 @@ def live(
             choice,
             calibration,
             model_of(choice, model_path, database),
-            None if body_path is None else read_body(body_path).skeleton,
+            body_of(body_path),
         )
         if positions is not None:
             session.stream_to(stack.enter_context(positions.open("w", encoding="utf-8")))

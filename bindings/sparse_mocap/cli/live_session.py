@@ -18,6 +18,8 @@ from ..readings import measured_channels
 from ..report import LiveMatch
 from .options import MethodChoice
 
+__all__ = ["LiveSession"]
+
 _NUM_POSES = 250  # that figures are averaged over
 
 

@@ -12,6 +12,8 @@ from rich.text import Text
 
 from .live_session import LiveSession
 
+__all__ = ["view"]
+
 _COLOURS = {"streaming": "green", "live": "green", "failed": "red", "silent": "red"}
 
 

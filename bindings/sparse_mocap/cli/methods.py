@@ -13,6 +13,8 @@ from ..methods import MethodInfo, OptionInfo, method_info
 from ..methods import methods as all_methods
 from .console import print_table
 
+__all__ = ["methods"]
+
 
 @click.command()
 @click.argument("name", required=False)

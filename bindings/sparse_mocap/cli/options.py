@@ -16,7 +16,16 @@ from .. import noise_presets, site_names
 from ..methods import DEFAULT_METHOD, MethodInfo, method_info, methods, renamed_preset
 from .console import warn
 
-__all__ = ["Place", "Sites", "Span", "check_ending", "check_presets", "places_of"]
+__all__ = [
+    "MethodChoice",
+    "PositionAlongBone",
+    "Setting",
+    "Sites",
+    "Span",
+    "check_ending",
+    "method_choice",
+    "positions_along_bone_of",
+]
 
 PAPER_SITES = "left_wrist,right_wrist,left_ankle,right_ankle"
 

@@ -8,9 +8,19 @@ from typing import Any
 
 import click
 
-from .. import MotionDatabase, Reconstruction, read_model, read_take, write_bvh, write_positions
+from .. import (
+    MotionDatabase,
+    Reconstruction,
+    Skeleton,
+    Take,
+    read_model,
+    read_take,
+    write_bvh,
+    write_positions,
+)
 from ..alignment import aligned
 from ..body_file import read_body
+from ..calibration import Calibration
 from ..calibration_file import read_calibration
 from ..reconstruction import reconstruct as reconstruct_take
 from ..report import is_unlike_the_database, match, report, unit_warnings
@@ -30,6 +40,8 @@ from .options import (
     preset_option,
     set_option,
 )
+
+__all__ = ["body_of", "model_of", "reconstruct", "require_given"]
 
 
 @click.command()
@@ -84,12 +96,8 @@ def reconstruct(
     check_ending(output, ".bvh")
     choice = method_choice(method, preset, settings)
     require_given(choice, database_path, model_path, body_path)
-    recorded = read_take(take)
-    if clap is not None:
-        recorded, _ = aligned(recorded, clap)
-    calibration = None if calibration_path is None else read_calibration(calibration_path)
-    if calibration is None:
-        positions_along_bone_of(recorded.sites, positions_along_bone)
+    recorded = read_take(take) if clap is None else aligned(read_take(take), clap)[0]
+    calibration = _calibration(calibration_path, recorded, positions_along_bone)
     database = None if database_path is None else MotionDatabase(database_path)
     with progress_bar("Reconstructing") as progress:
         solved = reconstruct_take(
@@ -103,19 +111,27 @@ def reconstruct(
             positions_along_bone=dict(positions_along_bone),
             use_gyroscopes=gyroscopes,
             model=model_of(choice, model_path, database),
-            body=None if body_path is None else read_body(body_path).skeleton,
+            body=body_of(body_path),
             progress=progress,
         )
     write_bvh(output, solved.motion)
     if positions is not None:
-        names = solved.motion.skeleton.names
-        where = solved.motion.joint_positions(frame)
-        write_positions(positions, solved.readings.times_s, names, where)
+        _write_positions(positions, solved, frame)
     if json_path is not None:
         about = _about(take, database_path, choice, offline, solved)
         write_json(json_path, about | report(solved, database))
     warn(unit_warnings(recorded))
     _print_summary(output, solved)
+
+
+def _calibration(
+    path: Path | None, take: Take, positions_along_bone: tuple[tuple[str, float], ...]
+) -> Calibration | None:
+    """Returns the calibration; without one, positions must be those of the take's sites."""
+    if path is not None:
+        return read_calibration(path)
+    positions_along_bone_of(take.sites, positions_along_bone)
+    return None
 
 
 def require_given(
@@ -128,6 +144,11 @@ def require_given(
             raise click.UsageError(f"Missing option '--{need}': {choice.method} needs it.")
 
 
+def body_of(path: Path | None) -> Skeleton | None:
+    """Returns the skeleton of a body file."""
+    return None if path is None else read_body(path).skeleton
+
+
 def model_of(choice: MethodChoice, path: Path | None, database: MotionDatabase | None) -> Any:
     """Returns the model of the method: from a file of its own, or kept in the database."""
     if path is not None:
@@ -135,6 +156,12 @@ def model_of(choice: MethodChoice, path: Path | None, database: MotionDatabase |
     if "model" in choice.info.needs and database is not None:
         return database.model(choice.method)
     return None
+
+
+def _write_positions(path: Path, solved: Reconstruction, frame: str) -> None:
+    motion = solved.motion
+    where = motion.joint_positions(frame)
+    write_positions(path, solved.readings.times_s, motion.skeleton.names, where)
 
 
 def _about(

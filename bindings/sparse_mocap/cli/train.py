@@ -23,6 +23,8 @@ from ..readings import Readings, all_readings, channels_in
 from .console import progress_bar, warn
 from .options import FilePath, check_ending, method_choice, preset_option, set_option
 
+__all__ = ["train"]
+
 
 @click.command()
 @click.argument("clips", metavar="CLIP...", nargs=-1, type=FilePath)
@@ -53,7 +55,7 @@ def train(
         raise ConfigError(
             f"{choice.method} needs no trained model: give it a motion database (--database)"
         )
-    files = find_motion_files(clips)
+    files = [Path(path) for path in find_motion_files(clips)]
     recorded = dict(takes)
     unknown = set(recorded) - {path.name for path in files}
     if unknown:
@@ -85,6 +87,4 @@ def _readings(take: Path, motion: Motion) -> Readings:
     recorded = read_take(take)
     channels = [channels_in(record) for record in recorded.sensors.values()]
     inputs = sensor_inputs(None, recorded.sites, channels)
-    return all_readings(
-        recorded, inputs, 1.0 / motion.frame_time_s, gravity_average="whole_take"
-    )
+    return all_readings(recorded, inputs, 1.0 / motion.frame_time_s, gravity_average="whole_take")

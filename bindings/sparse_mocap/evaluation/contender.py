@@ -9,6 +9,8 @@ from typing import Any
 
 from ..methods import Experiment, MethodInfo, method_info
 
+__all__ = ["Contender", "contenders", "variants"]
+
 
 @dataclass(frozen=True)
 class Contender:
@@ -41,8 +43,9 @@ def contenders(
     found = []
     for name in methods:
         info = method_info(name)
-        for preset in [preset.name for preset in info.presets if preset.name in presets] or [None]:
-            label = name if preset is None or len(info.presets) == 1 else f"{name} {preset}"
+        known = [preset.name for preset in info.presets]
+        for preset in [name for name in known if name in presets] or known[:1]:
+            label = name if len(known) == 1 else f"{name} {preset}"
             if info.works_live:
                 found.append(Contender(label, name, preset, options or {}))
             if info.works_on_whole_takes and (with_best_quality or not info.works_live):

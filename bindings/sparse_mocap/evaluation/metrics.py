@@ -6,6 +6,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = [
+    "frame_errors",
+    "interpolated",
+    "joint_angle_errors_deg",
+    "joint_errors",
+    "mean_jerk",
+    "nearest",
+]
+
 Floats = NDArray[np.float64]
 
 CM = 100.0
@@ -31,7 +40,7 @@ def frame_errors(errors: Floats) -> Floats:
 def joint_angle_errors_deg(truth: Floats, estimate: Floats) -> Floats:
     """Returns the angles (T, J) between rotations (T, J, 4; unit quaternions)."""
     cosine = np.abs(np.sum(truth * estimate, axis=-1))
-    return np.degrees(2.0 * np.arccos(np.minimum(cosine, 1.0)))
+    return np.asarray(np.degrees(2.0 * np.arccos(np.minimum(cosine, 1.0))))
 
 
 def nearest(times_s: Floats, values: Floats, wanted_s: Floats) -> Floats:

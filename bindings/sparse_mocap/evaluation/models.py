@@ -11,6 +11,8 @@ from ..methods import option_values
 from .contender import Contender
 from .protocol import is_copy, source_path
 
+__all__ = ["Trainer"]
+
 
 class Trainer:
     """Trains each method once for the same clips."""

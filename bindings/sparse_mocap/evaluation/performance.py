@@ -23,6 +23,8 @@ from ..readings import SensorInput
 from ..rotations import product
 from ..take import Take
 
+__all__ = ["Performance", "heading_rotations", "performed"]
+
 Floats = NDArray[np.float64]
 
 PAPER_SITES = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")

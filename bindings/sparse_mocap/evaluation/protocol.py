@@ -11,6 +11,8 @@ from pathlib import Path, PurePosixPath
 from .. import Clip, FormatError
 from ..table_errors import TableError
 
+__all__ = ["choose_tests", "excluded_clips", "is_copy", "motion_files", "source_path"]
+
 SCENARIOS = {
     1: "the database holds other clips of the actor and of others",
     2: "the database holds other clips of the actor only",

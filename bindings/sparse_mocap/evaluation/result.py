@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from .metrics import CM
 
+__all__ = ["ClipResult", "Evaluation", "TestClip", "clip_result"]
+
 Floats = NDArray[np.float64]
 
 HISTOGRAM_BIN_CM = 0.5

@@ -39,6 +39,8 @@ from .performance import PAPER_SITES, Performance, heading_rotations, performed
 from .protocol import choose_tests, excluded_clips, motion_files, source_path
 from .result import ClipResult, Evaluation, TestClip, clip_result
 
+__all__ = ["Estimate", "Settings", "evaluate"]
+
 Floats = NDArray[np.float64]
 Progress = Callable[[int, int, str], bool | None]
 

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from .. import GRAVITY_MPS2
 from ..rotations import inverse, rotated
 
+__all__ = ["with_gravity"]
+
 Floats = NDArray[np.float64]
 
 STANDARD_GRAVITY_MPS2 = 9.80665

@@ -22,8 +22,6 @@ __all__ = [
     "check_finite",
     "find_line",
     "interpolated",
-    "interpolated_orientation",
-    "normalised",
     "read_table",
     "read_texts",
     "shown",

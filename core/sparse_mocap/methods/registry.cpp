@@ -5,12 +5,19 @@
 
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/database/model.hpp"
-#include "sparse_mocap/path_regression/method.hpp"
 #include "sparse_mocap/readings/channel_names.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
-#include "sparse_mocap/tautges2011/method.hpp"
 
 namespace sparse_mocap {
+
+// method_list.inc is made by CMake: SPARSE_MOCAP_METHOD(name) for each method.
+#define SPARSE_MOCAP_METHOD(name) \
+  namespace name {                \
+  MethodEntry method();           \
+  }
+#include "method_list.inc"
+#undef SPARSE_MOCAP_METHOD
+
 namespace {
 
 void require(bool is_met, const MethodInfo& method, const std::string& what) {
@@ -53,10 +60,11 @@ void check(const MethodInfo& method, const MethodContext& context) {
 }  // namespace
 
 const std::vector<MethodEntry>& methods() {
+#define SPARSE_MOCAP_METHOD(name) name::method(),
   static const std::vector<MethodEntry> list{
-      path_regression::method(),
-      tautges2011::method(),
+#include "method_list.inc"
   };
+#undef SPARSE_MOCAP_METHOD
   return list;
 }
 

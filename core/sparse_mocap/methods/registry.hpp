@@ -10,7 +10,7 @@
 
 namespace sparse_mocap {
 
-// All methods, the default first; a new one is one line in registry.cpp.
+// All methods, the default first: those that core/CMakeLists.txt lists.
 const std::vector<MethodEntry>& methods();
 
 // Throws ConfigError naming the known methods.

@@ -11,7 +11,8 @@ namespace {
 
 bool is_on_limb(const Site& site) {
   using namespace standard_joint;
-  return site.carrier != root && site.carrier != thorax && site.carrier != head;
+  return site.carrier != root && site.carrier != upperback && site.carrier != thorax &&
+         site.carrier != head;
 }
 
 }  // namespace

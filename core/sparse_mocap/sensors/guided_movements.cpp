@@ -11,13 +11,14 @@ namespace {
 
 bool is_on_trunk(const Site& site) {
   using namespace standard_joint;
-  return site.carrier == head || site.carrier == thorax || site.carrier == root;
+  return site.carrier == head || site.carrier == thorax || site.carrier == upperback ||
+         site.carrier == root;
 }
 
 bool is_on_arm(const Site& site) {
   using namespace standard_joint;
   return site.carrier == lradius || site.carrier == rradius || site.carrier == lhumerus ||
-         site.carrier == rhumerus;
+         site.carrier == rhumerus || site.carrier == lwrist || site.carrier == rwrist;
 }
 
 // Where the shoulder is, seen along the forearm of a straight arm.

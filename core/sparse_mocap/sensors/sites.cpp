@@ -38,6 +38,9 @@ const std::vector<Site>& all_sites() {
       {"right_upper_arm", rhumerus, rhumerus, limb(rhumerus, up)},
       {"left_thigh", lfemur, lfemur, limb(lfemur, forward)},
       {"right_thigh", rfemur, rfemur, limb(rfemur, forward)},
+      {"left_hand", lwrist, lwrist, limb(lwrist, up)},
+      {"right_hand", rwrist, rwrist, limb(rwrist, up)},
+      {"torso", upperback, upperback, mounting(up, forward)},
   };
   return sites;
 }

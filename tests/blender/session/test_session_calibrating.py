@@ -126,13 +126,9 @@ def test_live_poses_of_calibrated_sensors_are_those_of_ideal_ones(performance, t
         sparse_mocap.reconstruct(one, database, calibration=how, use_gyroscopes=False)
         for one, how in ((ideal, None), (take, calibration))
     )
-    assert np.abs(
-        found.readings.specific_force - wanted.readings.specific_force
-    ).max() < 1e-9
+    assert np.abs(found.readings.specific_force - wanted.readings.specific_force).max() < 1e-9
     channels = [["specific_force"]] * len(SITES)
-    poses = LivePoses(
-        database, dict(enumerate(SITES)), channels, MethodChoice(), calibration
-    )
+    poses = LivePoses(database, dict(enumerate(SITES)), channels, MethodChoice(), calibration)
     assert poses.advance(np.empty(0, sparse_mocap.capture.sample_log.SAMPLE)) is None
     with pytest.raises(CalibrationError, match="calibrate again"):
         LivePoses(database, {0: "chest"}, "default", calibration)

@@ -40,7 +40,7 @@ def test_output_is_beside_the_folder_and_gets_its_ending(tmp_path):
 
 
 def test_sources_that_are_none_are_refused(tmp_path):
-    for source, said in (("", "folder of motion files"), (str(tmp_path / "nowhere"), "nowhere")):
+    for source, said in (("", "folder with motion files"), (str(tmp_path / "nowhere"), "nowhere")):
         with pytest.raises(InputError, match=said):
             database.build_job([source], str(tmp_path / "x"), database.BuildChoices())
 

@@ -112,7 +112,7 @@ TEST(Registry, SaysWhatAMethodLacks) {
   EXPECT_EQ(refused([](auto& c) { c.database = nullptr; }),
             "method path_regression needs a motion database (--database)");
   EXPECT_EQ(refused([](auto& c) { c.sensors.clear(); }),
-            "method path_regression needs 1 to 11 sensors, got 0");
+            "method path_regression needs 1 to 14 sensors, got 0");
   EXPECT_EQ(refused([](auto& c) { c.sensors[1].channels = Channel::orientation; }),
             "method path_regression needs specific_force of every sensor, and right_wrist does not "
             "give it");

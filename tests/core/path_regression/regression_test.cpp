@@ -104,8 +104,8 @@ TEST(RegressionWeights, AreThoseOfThePathsWhenAllFeaturesAreAlike) {
 
 TEST(ShiftToRegression, MovesTheMeanToThePredictionAndKeepsDifferences) {
   Random random(6);
-  Neighbourhood neighbours = testing::random_neighbourhood(random, 12);
-  const Neighbourhood before = neighbours;
+  retrieval::Neighbourhood neighbours = testing::random_neighbourhood(random, 12);
+  const retrieval::Neighbourhood before = neighbours;
   Eigen::VectorXd weights = random.column(12, 1.0);
   weights /= weights.sum();
   shift_to_regression(neighbours, weights);
@@ -116,7 +116,6 @@ TEST(ShiftToRegression, MovesTheMeanToThePredictionAndKeepsDifferences) {
   };
   EXPECT_LT((spread(neighbours.angles) - spread(before.angles)).norm(), 1e-9);
   EXPECT_LT((spread(neighbours.positions) - spread(before.positions)).norm(), 1e-9);
-  EXPECT_EQ(neighbours.velocities, before.velocities);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace sparse_mocap::testing {
 
 struct SearchProblem {
   std::vector<std::int32_t> clip_of_frame;
-  std::vector<std::vector<Neighbour>> columns;
+  std::vector<std::vector<retrieval::Neighbour>> columns;
   retrieval::OlngConfig config;
 
   // What matching this node earns.
@@ -123,7 +123,7 @@ inline SearchProblem random_problem(Random& random, int frames, int columns, int
   for (int t = 0; t < columns; ++t) {
     std::vector<int> rows;
     for (int f = 0; f < frames; ++f) rows.push_back(f);
-    std::vector<Neighbour> column;
+    std::vector<retrieval::Neighbour> column;
     for (int i = 0; i < k; ++i) {
       const int pick = i + random.below(frames - i);
       std::swap(rows[static_cast<std::size_t>(i)], rows[static_cast<std::size_t>(pick)]);

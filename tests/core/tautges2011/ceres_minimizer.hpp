@@ -6,7 +6,8 @@
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 
-#include "sparse_mocap/tautges2011/minimizer.hpp"
+#include "sparse_mocap/retrieval/subspace.hpp"
+#include "sparse_mocap/tautges2011/energy.hpp"
 
 namespace sparse_mocap::testing {
 

@@ -32,6 +32,4 @@ def reconstructed(
     take: Take, database: MotionDatabase, *, best_quality: bool, gyroscopes: bool
 ) -> Motion:
     """The motion that the product's own method makes of a take, live or from the whole take."""
-    return reconstruct(
-        take, database, best_quality=best_quality, use_gyroscopes=gyroscopes
-    ).motion
+    return reconstruct(take, database, best_quality=best_quality, use_gyroscopes=gyroscopes).motion
