@@ -195,6 +195,7 @@ class LiveReadings:
 
     def __post_init__(self) -> None:
         has_up = [*map(bool, self.has_up)] or [False] * len(self.sensors)
+        # Where a sensor is worn does not change what it read.
         self._channels = Channels(["pelvis"] * len(self.sensors), None, has_up)
         self._stream = ReadingStream(self._channels.inputs(self.gyroscope_biases), self.rate_hz)
 

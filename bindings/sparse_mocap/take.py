@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from . import Motion, ReadingStream, SensorInput, simulate
+from . import Motion, ReadingStream, SensorInput, simulate, site_names
 from .table_errors import TakeError
 from .take_file import read_columns, write_columns
 
@@ -112,7 +112,8 @@ def resampled(take: Take, rate_hz: float) -> tuple[Floats, Floats]:
     order; where one is silent, before its first sample, after its last or for longer than 0.1 s,
     its reading is NaN.
     """
-    stream = ReadingStream([SensorInput(site) for site in take.sites], rate_hz)
+    anywhere = SensorInput(site_names()[0])  # where a sensor is worn does not change what it read
+    stream = ReadingStream([anywhere] * len(take.sensors), rate_hz)
     for index, record in enumerate(take.sensors.values()):
         stream.push(index, record.times_s, record.specific_force)
     read = stream.flush()

@@ -214,3 +214,10 @@ def test_one_sample_is_a_take() -> None:
     times, readings = resampled(Take({"head": still(np.array([3.0]))}), 25.0)
     assert times.tolist() == [3.0]
     np.testing.assert_allclose(readings, [[[0, 0, 9.81]]])
+
+
+def test_sensors_of_any_name_are_resampled() -> None:
+    head = record(np.arange(200) / 100)
+    times, readings = resampled(Take({"00B421E6": head, "head": head}), 25.0)
+    np.testing.assert_array_equal(readings[:, 0], readings[:, 1])
+    assert len(times) == 50
