@@ -88,7 +88,7 @@ class Span(click.ParamType):  # type: ignore[type-arg]
 def _position_option(name: str) -> Decorator:
     """Gives a command the parameter ``name``: sites and positions along their bones.
 
-    --place is what scripts of version 0.1 call it.
+    --place is what older scripts call it.
     """
 
     def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
