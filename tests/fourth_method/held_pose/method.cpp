@@ -6,7 +6,6 @@
 
 namespace sparse_mocap::held_pose {
 namespace {
-
 struct HeldPose : WholeTakeMethod {
   const Skeleton& skeleton() const override { return skeleton_; }
   double rate_hz() const override { return 30.0; }
