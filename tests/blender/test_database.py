@@ -73,7 +73,7 @@ def test_bad_databases_give_one_line(tmp_path):
         assert "damaged.smdb" in opened(damaged)
     assert "No such file" in opened(tmp_path / "missing.smdb")
     assert "folder" in opened(tmp_path)
-    assert "chosen" in opened("")
+    assert "Choose a motion database" in opened("")
 
 
 def test_several_sources_and_all_options_come_from_the_panel(tmp_path):
@@ -99,6 +99,6 @@ def test_several_sources_and_all_options_come_from_the_panel(tmp_path):
     assert bpy.ops.sparse_mocap.show_build_report() == {"FINISHED"}
     report = bpy.data.texts["Motion Database Report"].as_string()
     assert str(bad) in report
-    assert "Left out: 1" in report
+    assert "Skipped: 1" in report
     settings().strict = True
     assert "bad.bvh" in error_of(bpy.ops.sparse_mocap.build_database)

@@ -28,5 +28,5 @@ def test_bad_takes_give_one_line(tmp_path):
     bad.write_bytes(b"\xff\xfe\0\0")
     assert "bad.csv" in loaded(bad)
     assert "No such file" in loaded(tmp_path / "missing.csv")
-    assert "chosen" in loaded("")
+    assert "Choose a take" in loaded("")
     assert settings().take == ""
