@@ -4,7 +4,7 @@
 accuracy_table.py FOLDER [-o ACCURACY.md] [--json-folder DIR]
 
 Runs `sparse-mocap evaluate` on FOLDER for a known performer (scenario 1) and an unknown one
-(scenario 3), with and without gyroscopes, online and offline. What it writes depends on the
+(scenario 3), with and without gyroscopes, live and in best quality. What it writes depends on the
 data and the code alone: the same ones give the same bytes. With --json-folder the JSON of each
 evaluation is kept there, and what is there already is not run again.
 """
@@ -41,8 +41,8 @@ README come from here.
   each clip's frames, then over clips.
 - Known performer (scenario 1): the database holds other clips of the performer, never the test
   clip or a copy of it. Unknown performer (scenario 3): it holds none of the performer's clips.
-- Online: each frame from what was read until then and shortly after (latency). Offline: each frame
-  from the whole take.
+- Live quality: each frame from what was measured until then and shortly after (latency). Best
+  quality: each frame from the whole take.
 - Oracle: the nearest pose in the database, chosen by looking at the truth.
 """
 
@@ -60,11 +60,11 @@ def evaluate(folder: Path, scenario: int, gyroscopes: bool, kept: Path) -> Evalu
 
 
 def label(method: str) -> str:
-    """The method's name in a table: `default`, online."""
+    """The method's name in a table: `path_regression`, live quality."""
     if method in BASELINES:
         return BASELINES[method]
     name, _, how = method.partition(", ")
-    return f"`{name}`, {how or 'online'}"
+    return f"`{name}`, {how or 'live'} quality"
 
 
 def row(cells: Iterable[str]) -> str:
@@ -90,12 +90,14 @@ def summary(evaluations: dict[int, Evaluation], suffix: str, skip: Sequence[str]
 
 def details(found: Evaluation) -> list[str]:
     """All figures of one evaluation, and the errors of each class of movement."""
-    lines = head(["cm", "mean", "median", "90 %", "jerk km/s³", "latency ms"])
+    lines = head(["cm", "mean", "median", "90 %", "angle °", "jerk km/s³", "latency ms"])
     for method, figures in found["methods"].items():
         errors = (f"{figures[key]:.2f}" for key in ("mean_cm", "median_cm", "p90_cm"))
-        late = figures["latency_ms"]
+        late, angle = figures["latency_ms"], figures["joint_angle_deg"]
         late_ms = "" if late is None else f"{late:.0f}"
-        lines.append(row([label(method), *errors, f"{figures['jerk_kmps3']:.3f}", late_ms]))
+        angle_deg = "" if angle is None else f"{angle:.1f}"
+        jerk = f"{figures['jerk_kmps3']:.3f}"
+        lines.append(row([label(method), *errors, angle_deg, jerk, late_ms]))
     lines += ["", *head(["mean, cm", *map(label, found["methods"])])]
     for name in next(iter(found["methods"].values()))["class_errors_cm"]:
         errors = (f"{m['class_errors_cm'][name]:.1f}" for m in found["methods"].values())
@@ -112,8 +114,7 @@ def setting(found: Evaluation) -> str:
     return (
         f"Data: `{Path(settings['source']).name}`; {len(tests)} clips performed, of "
         f"{len(actors)} performers and {len(classes)} kinds of movement;\n"
-        f"a database of {settings['frames']:,} frames at {settings['rate_hz']:g} Hz. "
-        f"Method: `{settings['method']}`.\n"
+        f"a database of {settings['frames']:,} frames at {settings['rate_hz']:g} Hz.\n"
         f"Simulated sensors, noise {settings['noise']}: {worn}."
     )
 

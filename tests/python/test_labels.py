@@ -88,7 +88,7 @@ def test_letters_of_every_language_are_compared_in_any_case(tmp_path: Path) -> N
         ("actor,file\na,x\nb,y\nc,X\n", ':4: "X" is described in line 2 already; leave one'),
         ("", ": is empty; the header is file,"),
         ("\n  \n", ": is empty; the header is file,"),
-        ("file\0actor", ":1: holds a NUL"),
+        ("file\0actor", ":1: contains a NUL byte"),
     ],
 )
 def test_a_table_at_fault_says_where_and_what_to_do(

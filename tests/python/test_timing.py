@@ -16,10 +16,10 @@ from sparse_mocap import (
     SensorRecord,
     Take,
     read_motion,
-    resampled,
     write_take,
 )
 from sparse_mocap.alignment import AlignmentError, aligned
+from sparse_mocap.readings import all_readings
 
 
 def record(rate_hz: float, start_s: float, seed: int, jump_s: float | None = 4.0) -> SensorRecord:
@@ -40,8 +40,10 @@ def test_live_and_recorded_readings_are_the_same() -> None:
         *(part[(sensors["head"].times_s < 5) | (sensors["head"].times_s > 5.7)]
           for part in (sensors["head"].times_s, sensors["head"].specific_force))
     )  # fmt: skip
-    times, readings = resampled(Take(sensors), 25.0)
-    live = ReadingStream([SensorInput(site) for site in sensors], 25.0)
+    inputs = [SensorInput(site) for site in sensors]
+    whole = all_readings(Take(sensors), inputs, 25.0)
+    times, readings = whole.times_s, whole.specific_force
+    live = ReadingStream(inputs, 25.0)
     samples = sorted(
         (time, index, tuple(force))
         for index, sensor in enumerate(sensors.values())

@@ -179,7 +179,7 @@ def check_magic(path: Path, begin: bytes, magic: bytes, what: str) -> None:
             f"{path}: is a {what} of format version {version!r}, and this program reads version"
             f" {magic[-1:].decode()!r}; use the Sparse Mocap that recorded it"
         )
-    raise ValueError(f"{path}: is no {what} of a capture")
+    raise ValueError(f"{path}: is not a {what} of a capture")
 
 
 def read_records(path: Path) -> Iterator[Record]:

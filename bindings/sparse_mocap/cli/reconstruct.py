@@ -115,8 +115,7 @@ def reconstruct(
             progress=progress,
         )
     write_bvh(output, solved.motion)
-    if positions is not None:
-        _write_positions(positions, solved, frame)
+    _write_positions(positions, solved, frame)
     if json_path is not None:
         about = _about(take, database_path, choice, offline, solved)
         write_json(json_path, about | report(solved, database))
@@ -158,7 +157,9 @@ def model_of(choice: MethodChoice, path: Path | None, database: MotionDatabase |
     return None
 
 
-def _write_positions(path: Path, solved: Reconstruction, frame: str) -> None:
+def _write_positions(path: Path | None, solved: Reconstruction, frame: str) -> None:
+    if path is None:
+        return
     motion = solved.motion
     where = motion.joint_positions(frame)
     write_positions(path, solved.readings.times_s, motion.skeleton.names, where)

@@ -131,4 +131,4 @@ def test_live_poses_of_calibrated_sensors_are_those_of_ideal_ones(performance, t
     poses = LivePoses(database, dict(enumerate(SITES)), channels, MethodChoice(), calibration)
     assert poses.advance(np.empty(0, sparse_mocap.capture.sample_log.SAMPLE)) is None
     with pytest.raises(CalibrationError, match="calibrate again"):
-        LivePoses(database, {0: "chest"}, "default", calibration)
+        LivePoses(database, {0: "chest"}, channels[:1], MethodChoice(), calibration)

@@ -94,7 +94,7 @@ def test_a_recording_becomes_a_take_and_a_performance(made, port, tmp_path):
     session = _connected(port, tmp_path)
     session.record().result(5)
     until(lambda: session.state.recording and session.state.recording["samples"] > 600)
-    job = sensors.save_take_job(session, made[0], "", tmp_path / "takes", "default")
+    job = sensors.save_take_job(session, made[0], "", tmp_path / "takes", MethodChoice())
     kept = job.run()
     assert kept.reason == ""
     assert kept.warnings == ()
@@ -110,7 +110,7 @@ def test_a_take_is_kept_though_there_is_no_database(port, tmp_path):
     session = _connected(port, tmp_path)
     session.record().result(5)
     until(lambda: session.state.recording and session.state.recording["samples"] > 100)
-    kept = sensors.save_take_job(session, "", "", tmp_path / "takes", "default").run()
+    kept = sensors.save_take_job(session, "", "", tmp_path / "takes", MethodChoice()).run()
     assert kept.performance is None
     assert "database" in kept.reason
     assert sparse_mocap.read_take(kept.path).sites == SITES
@@ -139,7 +139,7 @@ def test_a_recording_outlives_the_session_and_is_found(port, tmp_path):
     live.begin(sensors.attach_session(found.session))
     again = live.current()
     until(lambda: again.state.recording is not None)
-    kept = sensors.save_take_job(again, "", "", tmp_path / "takes", "default").run()
+    kept = sensors.save_take_job(again, "", "", tmp_path / "takes", MethodChoice()).run()
     assert sparse_mocap.read_take(kept.path).sites == SITES
     live.end()
     until(lambda: not is_alive(found.pid))
