@@ -7,8 +7,8 @@
      "bones_m": {"root": [0, 0, 0], "lhipjoint": [0.08, -0.1, 0.04], ...}}
 
 ``bones_m`` has each of the 21 standard joints: the way from its pivot to its end in metres, in rest
-pose (x to the left, y up, z forward). A body for sensors comes from a motion of the performer, or,
-where there is none, from their height.
+pose (x to the left, y up, z forward). A body comes from a motion of the performer, or, where there
+is none, from their height.
 """
 
 from __future__ import annotations
@@ -26,6 +26,8 @@ from ._core import Body, ConfigError, FormatError, read_motion, standard_joint_n
 from .files import write_text
 from .mappings import to_standard
 from .table_errors import TableError, read_lines
+
+__all__ = ["BodyFileError", "body_of_motion", "read_body", "write_body"]
 
 FilePath = str | os.PathLike[str]
 
