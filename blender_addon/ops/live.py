@@ -183,7 +183,7 @@ class SPARSEMOCAP_OT_stop_take(JobOperator, Operator):
     """Stop recording, save the take and reconstruct it as an action on an armature."""
 
     bl_idname = "sparse_mocap.stop_take"
-    bl_label = "Stop"
+    bl_label = "Stop Recording"
     bl_description = "Stop recording, save the take and reconstruct it as an action on an armature"
     bl_options = {"REGISTER", "UNDO"}
 

@@ -74,8 +74,10 @@ def _choices(layout: UILayout, context: Context) -> None:
     column = layout.column()
     column.use_property_split = True
     column.use_property_decorate = False
-    for name in ("driver", "baud", "driver_options", "sites"):
-        column.prop(settings, name)
+    column.prop(settings, "driver", text="Protocol")  # the names are too long for a narrow sidebar
+    column.prop(settings, "baud")
+    column.prop(settings, "driver_options")
+    column.prop(settings, "sites", text="Locations")
     row = layout.row()
     row.scale_y = 1.5
     row.enabled = bool(settings.port)
