@@ -12,8 +12,8 @@ test_everything() {
   suite 'Python' test_python
   test_blenders
   if [ "$left_out" -ne 0 ]; then
-    echo "$left_out tests need recorded data and were skipped: SPARSE_MOCAP_DATA names no folder" \
-      'that has it (see .github/CONTRIBUTING.md)'
+    echo "$left_out tests were skipped for lack of recorded data:" \
+      'set SPARSE_MOCAP_DATA to its folder (see .github/CONTRIBUTING.md)'
   fi
   echo "$passed passed, $failed failed"
   [ "$failed" -eq 0 ]
