@@ -110,6 +110,8 @@ class LiveReconstructor:
         used = [_used(measured, use_gyroscopes) for measured in channels]
         inputs = sensor_inputs(calibration, list(sensors.values()), used)
         self._numbers = list(sensors)
+        self.sensors: tuple[SensorInput, ...] = tuple(inputs)
+        """Where the sensors are worn and how they are corrected, in the order of the numbers."""
         self._live = _core.LiveReconstructor(inputs, request, largest_backlog=largest_backlog)
 
     def push(self, samples: Samples) -> None:

@@ -145,13 +145,19 @@ def contents() -> dict[str, object]:
         kind: sorted(item.name for item in getattr(data, kind))
         for kind in ("objects", "armatures", "actions", "meshes", "collections", "scenes")
     }
-    found["settings"] = [
-        getattr(settings(), name)
-        for name in settings().bl_rna.properties.keys()  # noqa: SIM118 - not a dict
-        if name not in ("rna_type", "name", "more_sources")
-    ]
+    found["settings"] = _values(settings())
     found["active"] = bpy.context.view_layer.objects.active
     found["mode"] = bpy.context.mode
+    return found
+
+
+def _values(group) -> dict[str, object]:
+    """The settings of a property group by name, those in its collections too."""
+    found = {}
+    for name in group.bl_rna.properties.keys():  # noqa: SIM118 - not a dict
+        value = None if name == "rna_type" else getattr(group, name)
+        is_collection = isinstance(value, bpy.types.bpy_prop_collection)
+        found[name] = [_values(item) for item in value] if is_collection else value
     return found
 
 

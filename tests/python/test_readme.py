@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the README tells to type works. Its Python runs in tests/blender/test_readme.py."""
+"""What the README tells to type works; its Python for Blender runs in tests/blender."""
 
 from __future__ import annotations
 
@@ -73,6 +73,8 @@ def test_the_commands_work_in_their_order(
     for block in blocks():
         if any("calibrate" in words for words in block.commands):
             record_guided_movements(block, tmp_path)
+        if block.language == "python" and "import bpy" not in block.text:
+            run_python(block.text, tmp_path)
         for words in block.commands:
             if " ".join(words) not in NOT_RUN:
                 check(words[WORDS_BEFORE[words[1]] :], tmp_path)
@@ -85,6 +87,10 @@ def record_guided_movements(block: Block, folder: Path) -> None:
     words = next(words for words in block.commands if "calibrate" in words)
     arms, legs = (words[words.index(option) + 1].split(":") for option in ("--arms", "--legs"))
     guided_body.main(folder / "take.csv", folder / "planted.npy", arms[0], legs[0], legs[1])
+
+
+def run_python(text: str, folder: Path) -> None:
+    subprocess.run([sys.executable, "-c", text], cwd=folder, env=os.environ | HERE, check=True)
 
 
 def check(line: list[str], folder: Path) -> None:
