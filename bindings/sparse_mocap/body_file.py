@@ -7,8 +7,8 @@
      "bones_m": {"root": [0, 0, 0], "lhipjoint": [0.08, -0.1, 0.04], ...}}
 
 ``bones_m`` has each of the 21 standard joints: the way from its pivot to its end in metres, in rest
-pose (x to the left, y up, z forward). A body for sensors comes from a motion of the performer, or,
-where there is none, from their height.
+pose (x to the left, y up, z forward). A body comes from a motion of the performer, or, where there
+is none, from their height.
 """
 
 from __future__ import annotations

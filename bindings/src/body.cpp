@@ -27,14 +27,19 @@ py::array_t<double> bones_array(const Body& body) {
 }  // namespace
 
 void bind_body(py::module_& m) {
-  py::class_<Body>(m, "Body")
-      .def(py::init(&make_body), py::arg("bones"), py::arg("performer") = "")
-      .def_readonly("performer", &Body::performer)
-      .def_property_readonly("bones", &bones_array)
-      .def_property_readonly("skeleton", &Body::skeleton)
-      .def_property_readonly("height_m",
-                             [](const Body& body) { return standing_height_m(body.bones); });
-  m.def("body_of_height", &body_of_height, py::arg("height_m"));
+  py::class_<Body>(m, "Body",
+                   "The body of a performer: a standard skeleton of their proportions. Immutable.")
+      .def(py::init(&make_body), py::arg("bones"), py::arg("performer") = "",
+           "Takes bones as below. Raises ConfigError for lengths that nobody has.")
+      .def_readonly("performer", &Body::performer, "A name, may be empty.")
+      .def_property_readonly("bones", &bones_array,
+                             "(21, 3) m, from pivot to end of each standard joint in rest pose.")
+      .def_property_readonly("skeleton", &Body::skeleton, "The standard skeleton with these bones.")
+      .def_property_readonly(
+          "height_m", [](const Body& body) { return standing_height_m(body.bones); },
+          "How tall somebody with these bones stands, sole to crown.");
+  m.def("body_of_height", &body_of_height, py::arg("height_m"),
+        "A medium body scaled to a standing height. Raises ConfigError unless it is 0.5 to 2.5 m.");
 }
 
 }  // namespace sparse_mocap::python

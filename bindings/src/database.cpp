@@ -56,16 +56,21 @@ py::list other_tensors(const MotionDatabase& database) {
   return rows;
 }
 
-}  // namespace
+void bind_clips(py::module_& m) {
+  py::class_<SourceSkeleton>(m, "SourceSkeleton",
+                             R"doc(One kind of skeleton among a database's sources.
 
-void bind_database(py::module_& m) {
-  py::class_<SourceSkeleton>(m, "SourceSkeleton")
+joints are the source's that move the standard ones; unit_scale times its lengths are metres.)doc")
       .def_readonly("id", &SourceSkeleton::id)
       .def_readonly("num_joints", &SourceSkeleton::num_joints)
       .def_readonly("joints", &SourceSkeleton::joints)
       .def_readonly("unit_scale", &SourceSkeleton::unit_scale);
 
-  py::class_<Clip>(m, "Clip")
+  py::class_<Clip>(m, "Clip", R"doc(A stretch of a database's rows.
+
+source is the file, relative to the folder built from; hashes are XXH3 of it and of the .asf
+that was read with it; skeleton is the id of its SourceSkeleton; origin and license are notes;
+warnings are kinds of warnings about the file and how often (empty for copies).)doc")
       .def_readonly("name", &Clip::name)
       .def_readonly("actor", &Clip::actor)
       .def_readonly("motion_class", &Clip::motion_class)
@@ -80,44 +85,74 @@ void bind_database(py::module_& m) {
       .def_readonly("warnings", &Clip::warnings)
       .def_readonly("is_mirrored", &Clip::is_mirrored)
       .def_readonly("is_reversed", &Clip::is_reversed)
-      .def_readonly("tempo", &Clip::tempo)
+      .def_readonly("tempo", &Clip::tempo, "How much faster than performed.")
       .def_readonly("begin", &Clip::begin)
       .def_readonly("end", &Clip::end);
+}
 
-  py::class_<MotionDatabase, std::shared_ptr<MotionDatabase>>(m, "MotionDatabase")
-      .def(py::init([](const std::filesystem::path& path) {
-             const py::gil_scoped_release release;
-             return std::const_pointer_cast<MotionDatabase>(MotionDatabase::open(path));
-           }),
-           py::arg("path"))
-      .def_property_readonly("path", [](const MotionDatabase& d) { return d.path().string(); })
-      .def_property_readonly("num_frames", &MotionDatabase::num_frames)
-      .def_property_readonly("rate_hz", &MotionDatabase::rate_hz)
-      .def_property_readonly("skeleton", [](const MotionDatabase& d) { return d.skeleton(); })
-      .def_property_readonly("clips", [](const MotionDatabase& d) { return d.clips(); })
-      .def_property_readonly("skeletons",
-                             [](const MotionDatabase& d) { return d.sources().skeletons; })
-      .def_property_readonly("skipped",
-                             [](const MotionDatabase& d) { return pairs_of(d.sources().skipped); })
-      .def_property_readonly(
-          "duplicates", [](const MotionDatabase& d) { return pairs_of(d.sources().duplicates); })
-      .def_property_readonly("site_names", &MotionDatabase::site_names)
-      .def_property_readonly("build_info", &MotionDatabase::build_info)
+using DatabaseClass = py::class_<MotionDatabase, std::shared_ptr<MotionDatabase>>;
+
+void bind_content(DatabaseClass& database) {
+  database
       .def(
           "array",
           [](const std::shared_ptr<MotionDatabase>& d, const std::string& name) {
             return view_of(d, name);
           },
-          py::arg("name"))
-      .def("clip_motion", &clip_motion, py::arg("index"))
-      .def_property_readonly("model_names", &MotionDatabase::model_names)
+          py::arg("name"), R"doc(A read-only view of the rows.
+
+Names: angles, positions, root_motion, contacts, specific_force_pivot, specific_force_end,
+angular_velocity, up.)doc")
+      .def("clip_motion", &clip_motion, py::arg("index"),
+           "The clip as a motion on the standard skeleton, starting at the origin.")
+      .def_property_readonly("model_names", &MotionDatabase::model_names,
+                             "The methods whose models it holds.")
       .def(
           "model",
           [](const MotionDatabase& d, const std::string& method) {
             return std::make_shared<Model>(d.model(method));
           },
-          py::arg("method"))
-      .def_property_readonly("other_tensors", &other_tensors);
+          py::arg("method"),
+          "What a method learned and keeps here, see store_model. Raises FormatError.")
+      .def_property_readonly("other_tensors", &other_tensors,
+                             R"doc(Tensors that other programs put into the file.
+
+Name, element type, shape and bytes of each.)doc");
+}
+
+}  // namespace
+
+void bind_database(py::module_& m) {
+  bind_clips(m);
+  DatabaseClass database(m, "MotionDatabase", "An opened .smdb, read-only and thread-safe.");
+  database
+      .def(py::init([](const std::filesystem::path& path) {
+             const py::gil_scoped_release release;
+             return std::const_pointer_cast<MotionDatabase>(MotionDatabase::open(path));
+           }),
+           py::arg("path"), "Checks the whole file. Raises FormatError.")
+      .def_property_readonly("path", [](const MotionDatabase& d) { return d.path().string(); })
+      .def_property_readonly("num_frames", &MotionDatabase::num_frames)
+      .def_property_readonly("rate_hz", &MotionDatabase::rate_hz)
+      .def_property_readonly(
+          "skeleton", [](const MotionDatabase& d) { return d.skeleton(); },
+          "The standard skeleton that all its motions are on.")
+      .def_property_readonly(
+          "clips", [](const MotionDatabase& d) { return d.clips(); }, "In the order of their rows.")
+      .def_property_readonly(
+          "skeletons", [](const MotionDatabase& d) { return d.sources().skeletons; },
+          "The kinds of skeletons among its sources.")
+      .def_property_readonly(
+          "skipped", [](const MotionDatabase& d) { return pairs_of(d.sources().skipped); },
+          "Files that could not be used, and why.")
+      .def_property_readonly(
+          "duplicates", [](const MotionDatabase& d) { return pairs_of(d.sources().duplicates); },
+          "Files whose motion was there already, and where.")
+      .def_property_readonly("site_names", &MotionDatabase::site_names,
+                             "Where its virtual sensors are worn.")
+      .def_property_readonly("build_info", &MotionDatabase::build_info,
+                             "JSON: options and counts of the build.");
+  bind_content(database);
 }
 
 }  // namespace sparse_mocap::python

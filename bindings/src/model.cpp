@@ -104,23 +104,45 @@ py::list described(const Model& model) {
 
 void bind_model(py::module_& m) {
   using release = py::call_guard<py::gil_scoped_release>;
-  py::class_<Model, std::shared_ptr<Model>>(m, "Model")
-      .def(py::init(&make_model), py::arg("method"),
-           py::arg("tensors") = std::map<std::string, py::object>(), py::kw_only(),
-           py::arg("metadata") = Texts(), py::arg("version") = 1)
-      .def_readonly("method", &Model::method)
-      .def_readonly("version", &Model::version)
-      .def_readonly("metadata", &Model::metadata)
-      .def_property_readonly("path", [](const Model& model) { return model.path.string(); })
-      .def_property_readonly("tensors", &views_of)
-      .def_property_readonly("tensor_infos", &described)
-      .def("tensor", &view_of, py::arg("name"));
+  py::class_<Model, std::shared_ptr<Model>>(
+      m, "Model",
+      R"doc(What a method has learned: named tensors, and texts that say how it came about. Immutable.
+
+method is a name of a-z, 0-9 and _; version, from 1 on, is of what the method keeps in its
+models; path is the file that it was read from.)doc")
+      .def(
+          py::init(&make_model), py::arg("method"),
+          py::arg("tensors") = std::map<std::string, py::object>(), py::kw_only(),
+          py::arg("metadata") = Texts(), py::arg("version") = 1,
+          R"doc(Copies the tensors: of any shape, finite, types as NumPy's numbers of up to 8 bytes.
+
+Raises ValueError.)doc")
+      .def_readonly("method", &Model::method, "Whose model it is, see method_names.")
+      .def_readonly("version", &Model::version, "Of what the method keeps in its models.")
+      .def_readonly("metadata", &Model::metadata, "The method's own texts.")
+      .def_property_readonly(
+          "path", [](const Model& model) { return model.path.string(); },
+          "The file that it was read from, or empty.")
+      .def_property_readonly(
+          "tensors", &views_of,
+          "Read-only views by name. Raises ValueError for types that NumPy lacks (BF16, F8).")
+      .def_property_readonly(
+          "tensor_infos", &described,
+          "Name, element type as safetensors calls it, shape and bytes of each tensor.")
+      .def("tensor", &view_of, py::arg("name"),
+           "A read-only view. Raises KeyError, and ValueError for types that NumPy lacks.");
   m.def(
       "read_model", [](const fs::path& path) { return std::make_shared<Model>(read_model(path)); },
-      py::arg("path"), release());
-  m.def("write_model", &write_model, py::arg("path"), py::arg("model"), release());
-  m.def("store_model", &store_model, py::arg("database"), py::arg("model"), release());
-  m.def("remove_model", &remove_model, py::arg("database"), py::arg("method"), release());
+      py::arg("path"), release(),
+      "The model in an .smmodel, checked as a whole. Raises FormatError.");
+  m.def("write_model", &write_model, py::arg("path"), py::arg("model"), release(),
+        "Writes an .smmodel atomically. Raises OSError.");
+  m.def("store_model", &store_model, py::arg("database"), py::arg("model"), release(),
+        R"doc(Puts a model into a motion database, in place of the same method's; all else stays.
+
+The file is replaced atomically. Raises FormatError and OSError.)doc");
+  m.def("remove_model", &remove_model, py::arg("database"), py::arg("method"), release(),
+        "Takes a method's model out of a motion database. Raises FormatError and OSError.");
 }
 
 }  // namespace sparse_mocap::python
