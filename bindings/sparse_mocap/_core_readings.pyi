@@ -25,7 +25,7 @@ class SensorInput:
         R_site_sensor: ArrayLike | None = None,
         gyroscope_bias: ArrayLike | None = None,
     ) -> None:
-        """site is one of site_names(), channels are of CHANNEL_NAMES.
+        """Takes a site of site_names() and channels of CHANNEL_NAMES.
 
         position_along_bone is 0 at the joint near the body and 1 at the bone's far end. Specific
         forces times scale are m/s^2; R_site_sensor (3, 3) is applied after the scale;

@@ -131,7 +131,8 @@ class LiveReconstructor:
     ) -> None:
         """largest_backlog: when more readings wait, all but the newest are skipped; 0: never.
 
-        After a skip the method starts again without a past. Raises ConfigError for what the method cannot use.
+        After a skip the method starts again without a past. Raises ConfigError for what the method
+        cannot use.
         """
     @property
     def readings(self) -> ReadingStream:
@@ -167,7 +168,7 @@ class TrainingClip:
         motion_class: str = "",
         readings: Readings | None = None,
     ) -> None:
-        """motion is on a standard skeleton; an empty motion_class is unknown.
+        """Takes a motion on a standard skeleton; an empty motion_class is unknown.
 
         readings were recorded with the motion, at its rate; None: they are simulated.
         """

@@ -115,7 +115,7 @@ void bind_sensor_input(py::module_& m) {
            py::arg("channels") = std::vector<std::string>{"specific_force"}, py::kw_only(),
            py::arg("position_along_bone") = 1.0, py::arg("scale") = 1.0,
            py::arg("R_site_sensor") = py::none(), py::arg("gyroscope_bias") = py::none(),
-           R"doc(site is one of site_names(), channels are of CHANNEL_NAMES.
+           R"doc(Takes a site of site_names() and channels of CHANNEL_NAMES.
 
 position_along_bone is 0 at the joint near the body and 1 at the bone's far end. Specific
 forces times scale are m/s^2; R_site_sensor (3, 3) is applied after the scale;

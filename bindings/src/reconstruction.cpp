@@ -167,7 +167,8 @@ void bind_live(py::module_& m) {
            py::arg("sensors"), py::arg("request"), py::kw_only(), py::arg("largest_backlog") = 0,
            R"doc(largest_backlog: when more readings wait, all but the newest are skipped; 0: never.
 
-After a skip the method starts again without a past. Raises ConfigError for what the method cannot use.)doc")
+After a skip the method starts again without a past. Raises ConfigError for what the method
+cannot use.)doc")
       .def_property_readonly(
           "readings", [](BoundLive& b) -> ReadingStream& { return b.live().readings(); },
           py::return_value_policy::reference_internal,

@@ -54,11 +54,10 @@ ValueError for times that are not finite.)doc")
       .def_property_readonly(
           "num_segments", &ClockModel::num_segments,
           "1 from the first sample on, and 1 more for each reset of the device's clock.");
-  m.def(
-      "align_in_time", &align, py::arg("first_times_s"), py::arg("first"),
-      py::arg("second_times_s"), py::arg("second"), py::kw_only(), py::arg("largest_lag_s") = 1.0,
-      py::arg("window_s") = 1.5,
-      R"doc(Returns the lag between the clocks of two sensors, from an event that both recorded.
+  m.def("align_in_time", &align, py::arg("first_times_s"), py::arg("first"),
+        py::arg("second_times_s"), py::arg("second"), py::kw_only(), py::arg("largest_lag_s") = 1.0,
+        py::arg("window_s") = 1.5,
+        R"doc(Returns the lag between the clocks of two sensors, from an event that both recorded.
 
 first and second are magnitudes, such as that of specific force, one for each of the ascending
 times. They are correlated in a window around the strongest common event, a clap or a jump.
