@@ -10,22 +10,33 @@ from ._core_motion import Skeleton
 from ._core_types import Floats
 
 class ClockModel:
-    """Maps a device's clock to the host's; arrivals are only ever late."""
+    """Maps a device's clock to the host's monotonic clock; samples arrive late, never early.
 
-    def __init__(self, *, largest_drift_ppm: float = 500.0, window_s: float = 600.0) -> None: ...
+    A delay that all samples share cannot be measured and stays in the offset.
+    """
+
+    def __init__(self, *, largest_drift_ppm: float = 500.0, window_s: float = 600.0) -> None:
+        """Estimates a drift of at most largest_drift_ppm from the arrivals of the last window_s."""
     def observe(self, device_s: float, arrival_s: float) -> float:
-        """Takes a sample's device and arrival times; gives its host time, never going back."""
+        """Returns the host time of a sample or burst, s; never before the one returned last.
+
+        device_s is the device's unwrapped time, arrival_s the host's when it was received. Raises
+        ValueError for times that are not finite.
+        """
     def host_time_s(self, device_s: float) -> float:
-        """By all that is known now."""
+        """Returns the host time of a device time, s, as estimated from all arrivals so far."""
     @property
-    def offset_s(self) -> float: ...
+    def offset_s(self) -> float:
+        """Host time at which the device's time is 0, s."""
     @property
-    def drift_ppm(self) -> float: ...
+    def drift_ppm(self) -> float:
+        """How slow the device's clock is, in parts per million; negative when it is fast."""
     @property
-    def mean_lateness_s(self) -> float: ...
+    def mean_lateness_s(self) -> float:
+        """How much later than estimated the arrivals of the window are on average, s."""
     @property
     def num_segments(self) -> int:
-        """1 + how often the device's clock was set anew."""
+        """1 from the first sample on, and 1 more for each reset of the device's clock."""
 
 def align_in_time(
     first_times_s: ArrayLike,
@@ -36,11 +47,23 @@ def align_in_time(
     largest_lag_s: float = 1.0,
     window_s: float = 1.5,
 ) -> dict[str, Any]:
-    """The lag of the second signal: lag_s, correlation, runner_up, event_s, is_found."""
+    """Returns the lag between the clocks of two sensors, from an event that both recorded.
 
-def standing_pose_names() -> list[str]: ...
+    first and second are magnitudes, such as that of specific force, one for each of the ascending
+    times. They are correlated in a window around the strongest common event, a clap or a jump.
+
+    ``lag_s``: subtract it from the second sensor's times; ``correlation``: at this lag, -1 to 1;
+    ``runner_up``: the best correlation at another lag; ``event_s``: the middle of the event on the
+    first clock; ``is_found``: True when the event is clear and only one lag fits it.
+
+    Raises ValueError when sizes differ or the recordings overlap by less than the window.
+    """
+
+def standing_pose_names() -> list[str]:
+    """Returns the poses that a performer may stand in during a calibration."""
+
 def guided_movements() -> dict[str, tuple[str, list[str]]]:
-    """Each movement's instruction and the sites that it calibrates."""
+    """Returns each guided movement's instruction and the sites that it calibrates, by its name."""
 
 def calibrate_sensor(
     site: str,
@@ -51,4 +74,13 @@ def calibrate_sensor(
     default_position_along_bone: float | None,
     body: Skeleton | None = None,
 ) -> dict[str, Any]:
-    """One sensor's calibration; recordings are times_s, specific_force, angular_velocity."""
+    """Returns one sensor's calibration: the fields of SensorCalibration but its site.
+
+    standing and each named movement are a recording: times_s (T,), specific_force (T, 3) in m/s^2
+    or g, angular_velocity (T, 3) in rad/s or None, in the sensor's axes. Bones are those of body,
+    or of a medium body of that height. default_position_along_bone, 0 to 1, is used where the
+    movements do not determine it; None: one that is usual for the site.
+
+    Raises ConfigError for an unknown site, pose or movement, for a height or position out of range,
+    and for a performer who does not stand still long enough.
+    """

@@ -10,10 +10,10 @@ from ._core_types import Floats
 CHANNEL_NAMES: tuple[str, ...]
 """specific_force, angular_velocity, gravity_direction, orientation, position."""
 LARGEST_CLOCK_DRIFT: float
-"""Quartz drifts by 1e-4 at most; a device's clock that is off by more is not in real time."""
+"""A device's clock that is off by a larger part does not show real time; quartz is within 1e-4."""
 
 class SensorInput:
-    """A sensor of a performance: where it is worn, what is wanted of it, how it is corrected."""
+    """A sensor of a performance: its location, the channels to use and how to correct them."""
 
     def __init__(
         self,
@@ -25,28 +25,39 @@ class SensorInput:
         R_site_sensor: ArrayLike | None = None,
         gyroscope_bias: ArrayLike | None = None,
     ) -> None:
-        """Takes channels of CHANNEL_NAMES.
+        """Takes a site of site_names() and channels of CHANNEL_NAMES.
 
-        Specific forces times scale are m/s^2; R_site_sensor (3, 3) is applied after the scale;
-        gyroscope_bias (3,) is in rad/s and the sensor's own axes. Raises ConfigError for a site or
-        channel that is not known.
+        position_along_bone is 0 at the joint near the body and 1 at the bone's far end. Specific
+        forces times scale are m/s^2; R_site_sensor (3, 3) is applied after the scale;
+        gyroscope_bias (3,) is in rad/s and the sensor's own axes. Raises ConfigError for an unknown
+        site or channel.
         """
     @property
-    def site(self) -> str: ...
+    def site(self) -> str:
+        """The sensor location, one of site_names()."""
     @property
-    def position_along_bone(self) -> float: ...
+    def position_along_bone(self) -> float:
+        """From 0 at the joint near the body to 1 at the bone's far end."""
     @property
-    def channels(self) -> list[str]: ...
+    def channels(self) -> list[str]:
+        """The channels to use, in the order of CHANNEL_NAMES."""
     def corrected(
         self,
         specific_force: ArrayLike,
         angular_velocity: ArrayLike | None = None,
         orientation: ArrayLike | None = None,
     ) -> tuple[Floats, Floats | None, Floats | None]:
-        """What an ideal sensor would have measured, (T, 3), (T, 3) and (T, 4)."""
+        """Returns the values that an ideal sensor would have measured, None for what is not given.
+
+        specific_force (T, 3), in m/s^2 once scaled; angular_velocity (T, 3) rad/s; orientation
+        (T, 4) R_world_sensor, w x y z. Given in the sensor's axes, returned in its site's.
+        """
 
 class Readings:
-    """What S sensors read at T times, in their own axes unless said otherwise."""
+    """The values of S sensors at T times, in each sensor's axes unless said otherwise.
+
+    An index or a slice selects times; len() is T.
+    """
 
     def __init__(
         self,
@@ -60,40 +71,46 @@ class Readings:
         orientation: ArrayLike | None = None,
         positions_along_bone: Sequence[float] | None = None,
     ) -> None:
-        """A sensor has the channels that are known of it at some time."""
+        """Takes arrays shaped like the properties below; a channel that is not given is NaN.
+
+        A sensor has those channels that are finite at some time; positions_along_bone are 1 by
+        default. Raises ConfigError for an unknown site and ValueError for other shapes.
+        """
     def __len__(self) -> int: ...
     def __getitem__(self, index: int | slice) -> Readings: ...
     @property
     def times_s(self) -> Floats:
-        """(T,) s."""
+        """(T,) s, ascending."""
     @property
     def specific_force(self) -> Floats:
-        """(T, S, 3) m/s^2."""
+        """(T, S, 3) m/s^2, gravity included: 9.81 upwards at rest."""
     @property
     def angular_velocity(self) -> Floats:
         """(T, S, 3) rad/s."""
     @property
     def gravity_direction(self) -> Floats:
-        """(T, S, 3) unit vectors against gravity."""
+        """(T, S, 3) unit vectors against gravity, upwards."""
     @property
     def position(self) -> Floats:
         """(T, S, 3) m, world."""
     @property
     def orientation(self) -> Floats:
-        """(T, S, 4) R_world_sensor."""
+        """(T, S, 4) R_world_sensor, w x y z."""
     @property
-    def sites(self) -> list[str]: ...
+    def sites(self) -> list[str]:
+        """The S sensor locations."""
     @property
-    def positions_along_bone(self) -> list[float]: ...
+    def positions_along_bone(self) -> list[float]:
+        """S positions, from 0 at the joint near the body to 1 at the bone's far end."""
     @property
     def channels(self) -> list[list[str]]:
-        """A list of names for each sensor."""
+        """The names of each sensor's channels, of CHANNEL_NAMES."""
 
 class ReadingStream:
-    """From sensors' samples to readings at a rate, live and for whole takes.
+    """Turns sensors' samples into readings at a fixed rate, live and for whole takes.
 
-    Samples are corrected, low-passed and resampled; a sensor that is silent for longer than 0.1 s
-    has no reading in between.
+    Samples are corrected, low-passed and resampled. Where a sensor sent nothing for longer than
+    0.1 s, its readings are NaN.
     """
 
     def __init__(
@@ -105,11 +122,12 @@ class ReadingStream:
         tracker_yaw_rad: float = 0.0,
         tracker_origin_m: ArrayLike | None = None,
     ) -> None:
-        """Averages gravity over the past alone ("causal") or over the "whole_take".
+        """gravity_average: "causal" averages over the past, "whole_take" over the whole take.
 
-        With the latter all readings come with flush(). tracker_*: where the world of positions and
-        orientations stands in the performer's, turned about the vertical and then moved. Raises
-        ValueError without sensors or channels, or when the rate is not positive.
+        With the latter flush() returns all readings. tracker_yaw_rad and tracker_origin_m (3,)
+        place the tracker's world, of positions and orientations, in the performer's: a turn about
+        the vertical, then a shift. Raises ValueError without sensors, for a sensor without
+        channels, and for a rate that is not positive.
         """
     def push(
         self,
@@ -120,7 +138,13 @@ class ReadingStream:
         position: ArrayLike | None = None,
         orientation: ArrayLike | None = None,
     ) -> int:
-        """Takes samples of one sensor by their times on the common clock; gives how many."""
+        """Takes N samples of one sensor by its index; returns how many it used.
+
+        times_s (N,) are on the clock that all sensors share. specific_force and angular_velocity
+        (N, 3) are in the sensor's axes and units, position (N, 3) m and orientation (N, 4)
+        R_world_sensor in the tracker's world. Samples that are not finite or not after the sensor's
+        last one are skipped.
+        """
     def push_arrivals(
         self,
         sensor: int,
@@ -131,22 +155,24 @@ class ReadingStream:
         position: ArrayLike | None = None,
         orientation: ArrayLike | None = None,
     ) -> int:
-        """Takes samples that arrived together; the common clock is that of the arrivals.
+        """Takes N samples that arrived together, as push does; the shared clock is the host's.
 
-        device_time_s is unwrapped, and NaN for a device without a clock.
+        arrival_s (N,) is when they were received; device_time_s (N,) is the device's clock,
+        unwrapped, or NaN for a device without one. Returns how many samples it used.
         """
     def ready(self, now_s: float) -> Readings:
-        """The readings that can be had by now.
+        """Returns the next readings that are complete at now_s, on the clock of the samples.
 
-        A sensor that is late is waited for a tenth of a second; then the others go on without it.
+        A late sensor is waited for 0.1 s; then the readings come without it.
         """
     def flush(self) -> Readings:
-        """All further readings up to the last sample: the performance has ended."""
+        """Returns all remaining readings, up to the last sample, when the performance has ended."""
     @property
     def delay_s(self) -> float:
-        """How long after its time a reading can be had, when no sensor is late."""
+        """How long after its time a reading is ready when no sensor is late, in s."""
     @property
-    def rate_hz(self) -> float: ...
+    def rate_hz(self) -> float:
+        """Readings a second."""
 
 def channels_of(
     specific_force: ArrayLike,
@@ -154,7 +180,10 @@ def channels_of(
     position: ArrayLike | None = None,
     orientation: ArrayLike | None = None,
 ) -> list[str]:
-    """What a recording tells; a gyroscope that never turned tells nothing."""
+    """Returns which channels of CHANNEL_NAMES a recording of T samples has.
+
+    A gyroscope that reads nothing but zeros does not count: devices without one may send them.
+    """
 
 def gravity_directions(
     times_s: ArrayLike,
@@ -163,30 +192,37 @@ def gravity_directions(
     *,
     average: str = "causal",
 ) -> Floats:
-    """Unit vectors against gravity in a sensor's axes, (T, 3); average as in ReadingStream.
+    """Returns unit vectors against gravity, upwards, in a sensor's axes, (T, 3).
 
-    NaN in the first half second of the causal average, and everywhere when the gyroscope never
-    turned.
+    specific_force (T, 3) m/s^2 and angular_velocity (T, 3) rad/s are in the sensor's axes; average
+    is a gravity_average of ReadingStream. NaN in the first half second of the causal average, and
+    everywhere when the gyroscope reads nothing but zeros. Inclination as in VQF (Laidig and Seel,
+    Information Fusion 91, 2023).
     """
 
 def spread_evenly(arrival_s: ArrayLike) -> Floats:
-    """Times that ascend: samples that arrived at once are spread over the time before."""
+    """Returns ascending times (T,) of samples by their arrivals (T,), s.
+
+    Samples that arrived at once are spread over the time before.
+    """
 
 def host_times(device_s: ArrayLike, arrival_s: ArrayLike) -> tuple[Floats, float]:
-    """When samples were taken, in s of the machine's clock, and its seconds to one of the device's.
+    """Returns when samples were taken, (T,) s on the host's clock, and its rate.
 
-    A rate that is not real (an emulator that plays faster) is returned, but the device's own
-    seconds are kept.
+    The rate is host seconds per device second. device_s (T,) is unwrapped, or NaN for a device
+    without a clock; then the arrivals are spread evenly. A rate further from 1 than
+    LARGEST_CLOCK_DRIFT, such as that of an emulator that plays faster, is returned, but the times
+    keep the device's seconds. Raises ValueError when sizes differ.
     """
 
 R_WORLD_ZUP: tuple[float, float, float, float]
-"""The rotation of a world with z up in this project's."""
+"""The rotation from a world with z up to this project's, with y up; w x y z."""
 
 def rotation_product(left: ArrayLike, right: ArrayLike) -> Floats:
-    """Left times right, (T, 4)."""
+    """Returns left times right, (T, 4) each, w x y z: the rotation by right and then by left."""
 
 def rotated(rotations: ArrayLike, vectors: ArrayLike) -> Floats:
-    """The vectors (T, 3), each by its rotation (T, 4)."""
+    """Returns vectors (T, 3), each turned by its rotation (T, 4), w x y z."""
 
 def rotations_from_matrices(matrices: ArrayLike) -> Floats:
-    """Rotations (T, 4) of matrices (T, 3, 3)."""
+    """Returns the unit quaternions (T, 4), w x y z, of rotation matrices (T, 3, 3)."""

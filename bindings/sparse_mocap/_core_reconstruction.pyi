@@ -14,7 +14,10 @@ from ._core_readings import Readings, ReadingStream, SensorInput
 from ._core_types import Floats, ProgressCallback
 
 def method_infos() -> list[dict[str, Any]]:
-    """What is known of each method, the default first, as JSON has it."""
+    """Returns the methods' descriptions, the default first, as values that JSON can hold.
+
+    sparse_mocap.method_info() returns one of them as a MethodInfo.
+    """
 
 class ReconstructionRequest:
     """How a performance is to be reconstructed."""
@@ -31,10 +34,16 @@ class ReconstructionRequest:
         excluded_clips: Sequence[int] = (),
         tracker_yaw_rad: float = 0.0,
         tracker_origin_m: Sequence[float] = (0.0, 0.0, 0.0),
-    ) -> None: ...
+    ) -> None:
+        """An empty method or preset means the default; options map names to values as text.
+
+        database, model and body (a standard skeleton) are given where the method needs them.
+        excluded_clips are indices of database clips that are not used. tracker_* as in
+        ReadingStream. Raises ValueError unless tracker_origin_m has three numbers.
+        """
 
 class SensorRecording:
-    """What one sensor measured in a performance."""
+    """T samples of one sensor."""
 
     def __init__(
         self,
@@ -43,29 +52,35 @@ class SensorRecording:
         angular_velocity: ArrayLike | None = None,
         position: ArrayLike | None = None,
         orientation: ArrayLike | None = None,
-    ) -> None: ...
+    ) -> None:
+        """times_s (T,) ascend and are on the clock that all sensors share.
+
+        specific_force (T, 3), in m/s^2 once calibrated, and angular_velocity (T, 3) rad/s are in
+        the sensor's axes; position (T, 3) m and orientation (T, 4) R_world_sensor, w x y z, in the
+        tracker's world. None and NaN: not measured. Raises ValueError for other shapes.
+        """
 
 class PoseEstimate:
     """One reconstructed frame."""
 
     @property
     def time_s(self) -> float:
-        """When the sensors read it."""
+        """When the sensors measured it, in s on the clock of the samples."""
     @property
     def rotations(self) -> Floats:
         """(J, 4) w x y z: each joint relative to its parent, the root in the world."""
     @property
     def root_position(self) -> Floats:
-        """(3,) m, world."""
+        """(3,) m, world, pivot of the root."""
     @property
     def positions(self) -> Floats:
-        """(J, 3) m: the joints in the heading frame."""
+        """(J, 3) m, the joints' ends in the heading frame."""
     @property
     def contacts(self) -> Floats:
-        """(2,) probability that the left and the right foot stand."""
+        """(2,) probability that the left and the right foot are on the ground."""
     @property
     def diagnostics(self) -> dict[str, Floats]:
-        """What the method says of the frame: name to array, units in the names."""
+        """Further results of the method: name to array, units in the names."""
 
 class Reconstruction:
     """A reconstructed take: T frames, J joints."""
@@ -75,19 +90,19 @@ class Reconstruction:
         """The motion in the world, on the method's skeleton."""
     @property
     def readings(self) -> Readings:
-        """What the method was given, at its rate."""
+        """The T readings that the method used."""
     @property
     def rate_hz(self) -> float:
         """Frames a second."""
     @property
     def latency_s(self) -> float | None:
-        """How long after its reading a live pose is ready; None for best quality."""
+        """How long after its reading a live pose is ready, in s; None for best quality."""
     @property
     def contacts(self) -> Floats:
-        """(T, 2) probability that the left and the right foot stand."""
+        """(T, 2) probability that the left and the right foot are on the ground."""
     @property
     def diagnostics(self) -> dict[str, Floats]:
-        """What the method says of each frame: name to (T, N), units in the names."""
+        """Further results of the method: name to (T, N), units in the names; NaN where absent."""
 
 def reconstruct(
     take: Sequence[SensorRecording],
@@ -97,10 +112,15 @@ def reconstruct(
     best_quality: bool = False,
     progress: ProgressCallback | None = None,
 ) -> Reconstruction:
-    """A whole take. Raises ConfigError and Cancelled."""
+    """Returns the motion of a whole take: a recording and an input for each sensor.
+
+    best_quality uses the whole take for each pose; otherwise poses are those of a live preview.
+    Raises ConfigError for what the method cannot use, Cancelled, and ValueError unless there are
+    as many recordings as sensors.
+    """
 
 class LiveReconstructor:
-    """Sensors' samples to poses as they come; use it from one thread."""
+    """Turns sensors' samples into poses as they arrive; use it from one thread."""
 
     def __init__(
         self,
@@ -108,14 +128,19 @@ class LiveReconstructor:
         request: ReconstructionRequest,
         *,
         largest_backlog: int = 0,
-    ) -> None: ...
+    ) -> None:
+        """largest_backlog: when more readings wait, all but the newest are skipped; 0: never.
+
+        After a skip the method starts again without a past. Raises ConfigError for what the method
+        cannot use.
+        """
     @property
     def readings(self) -> ReadingStream:
-        """The stream that takes the sensors' samples."""
+        """The stream to push the sensors' samples into."""
     def advance(self, now_s: float) -> list[PoseEstimate]:
-        """The poses that can be had by now, on the clock of the samples."""
+        """Returns the next poses that are ready at now_s, on the clock of the samples."""
     def flush(self) -> list[PoseEstimate]:
-        """The remaining poses, when the performance ends."""
+        """Returns the remaining poses when the performance has ended."""
     @property
     def skeleton(self) -> Skeleton:
         """The skeleton of the poses."""
@@ -124,13 +149,13 @@ class LiveReconstructor:
         """Poses a second."""
     @property
     def latency_s(self) -> float:
-        """How long after its reading a pose is ready."""
+        """How long after its reading a pose is ready, in s."""
     @property
     def history_s(self) -> float:
-        """How far back the readings of a pose reach."""
+        """How far back the readings reach that a pose depends on, in s."""
     @property
     def num_skipped(self) -> int:
-        """Readings that came faster than poses could be made of them."""
+        """How many readings were skipped because they came faster than poses could be computed."""
 
 class TrainingClip:
     """One example that a model is trained from."""
@@ -142,7 +167,11 @@ class TrainingClip:
         *,
         motion_class: str = "",
         readings: Readings | None = None,
-    ) -> None: ...
+    ) -> None:
+        """Takes a motion on a standard skeleton; an empty motion_class is unknown.
+
+        readings were recorded with the motion, at its rate; None: they are simulated.
+        """
 
 def train(
     method: str,
@@ -152,19 +181,37 @@ def train(
     options: Mapping[str, str] = {},
     progress: ProgressCallback | None = None,
 ) -> Model:
-    """What a method learns from clips. Raises ConfigError and Cancelled."""
+    """Returns the model that a method learns from clips.
+
+    Raises ConfigError for a method that learns nothing and for what it cannot use, and Cancelled.
+    """
 
 def playback_best_path(
     database: MotionDatabase, take: Readings, excluded_clips: Sequence[int] = ()
 ) -> NDArray[np.int64]:
-    """Baseline: for each reading the database frame at the end of the best path."""
+    """Returns for each of T readings the database frame at the end of the best path, (T,).
+
+    A baseline that plays back the database: the paths are those of the online lazy neighbourhood
+    graph. excluded_clips, by index, and copies at other tempos are not used.
+    """
 
 def nearest_windows(
-    database: MotionDatabase, take: Readings, window: int = 10, excluded_clips: Sequence[int] = ()
+    database: MotionDatabase,
+    take: Readings,
+    window: int = 10,
+    excluded_clips: Sequence[int] = (),
 ) -> NDArray[np.int64]:
-    """Baseline: for each reading the frame whose last `window` readings are nearest."""
+    """Returns for each of T readings the database frame whose past readings are nearest, (T,).
+
+    A baseline after an idea of Slyper and Hodgins 2008; compares the last `window` readings.
+    excluded_clips, by index, and copies at other tempos are not used.
+    """
 
 def nearest_poses(
     database: MotionDatabase, positions: ArrayLike, excluded_clips: Sequence[int] = ()
 ) -> NDArray[np.int64]:
-    """Oracle: for each pose (T, 21, 3; heading frame) the database frame that is nearest."""
+    """Returns for each pose the database frame whose pose is nearest, (T,).
+
+    positions (T, 21, 3) m are in the heading frame. No retrieval from the database can be closer.
+    excluded_clips, by index, and copies at other tempos are not used.
+    """

@@ -14,7 +14,7 @@ class SkeletonMapping:
 
     @property
     def joints(self) -> dict[str, str]:
-        """The rig's joint for each standard one that it has."""
+        """The rig's joint for each standard joint that it has."""
     @property
     def is_by_names(self) -> bool:
         """False where limbs were recognised by their shape."""
@@ -23,44 +23,60 @@ class SkeletonMapping:
         """The rig's lengths times this are metres."""
     @property
     def R_world_file(self) -> Floats:
-        """(3, 3) turns the rig's world into one with y up."""
+        """(3, 3) rotation from the rig's world to one with y up."""
     @property
-    def warnings(self) -> list[str]: ...
+    def warnings(self) -> list[str]:
+        """What was guessed about the rig, one line each."""
     def to_standard(
         self, motion: Motion, skeleton: Skeleton | None = None
     ) -> tuple[Motion, list[str]]:
-        """The motion on a standard skeleton (of its own proportions when None), and warnings."""
+        """Returns the rig's motion on a standard skeleton, and warnings.
+
+        skeleton: the standard skeleton to use; None: one of the rig's proportions. Limbs point
+        where the rig's do; root translation is scaled by the ratio of leg lengths. Raises
+        ValueError for a motion of a skeleton with other joints.
+        """
     def to_rig(self, motion: Motion) -> Motion:
-        """A motion of the standard skeleton on the rig, the reverse of to_standard.
+        """Returns a motion of the standard skeleton on the rig, the reverse of to_standard.
 
         Limbs point where the standard's do; joints that map to nothing keep their rest; root
         translation is scaled by the ratio of leg lengths. Raises ValueError for a motion that is
         not on a standard skeleton.
         """
     def limb_errors_rad(self, motion: Motion, standard: Motion) -> dict[str, tuple[float, float]]:
-        """Mean and worst angle between each limb of a motion and of what to_standard made of it."""
+        """Returns the mean and worst angle between a motion's limbs and those of its transfer.
+
+        By the standard joint of each thigh, shank, upper arm and forearm, over all frames;
+        standard is what to_standard made of the motion. Raises ValueError for a motion of a
+        skeleton with other joints.
+        """
 
 def map_skeleton(motion: Motion, by_hand: dict[str, str] = ...) -> SkeletonMapping:
-    """Finds the body in a motion's skeleton and aligns the rest poses.
+    """Returns the mapping of a motion's skeleton, with the rest poses aligned.
 
     by_hand: the skeleton's joint for some standard ones; the others are found by their names, then
-    by their shape. Raises MappingError.
+    by their shape. Raises MappingError when it is not a human body.
     """
 
 def standard_motion(
     motion: Motion, skeleton: Skeleton | None = None, by_hand: dict[str, str] = ...
 ) -> tuple[Motion, list[str]]:
-    """map_skeleton and to_standard in one. Raises MappingError."""
+    """Returns what map_skeleton and then to_standard return. Raises MappingError."""
 
-def standard_joint_names() -> list[str]: ...
+def standard_joint_names() -> list[str]:
+    """Returns the standard skeleton's 21 joints, the root first."""
+
 def read_mapping(path: Path) -> dict[str, str]:
-    """A mapping by hand, from standard joints to a skeleton's. Raises FormatError."""
+    """Returns a file's mapping by hand, from standard joints to a rig's. Raises FormatError."""
 
 def write_mapping(path: Path, joints: dict[str, str]) -> None:
-    """Writes a mapping by hand atomically."""
+    """Writes a mapping by hand atomically. Raises OSError."""
 
 def remembered_mapping(folder: Path, skeleton: Skeleton) -> dict[str, str]:
-    """The mapping by hand that a folder keeps for a skeleton, empty when there is none."""
+    """Returns the mapping by hand that a folder holds for a skeleton; empty when there is none.
+
+    Raises FormatError when its file cannot be read.
+    """
 
 def remembered_mapping_path(folder: Path, skeleton: Skeleton) -> str | os.PathLike[str]:
-    """Where the folder keeps it."""
+    """Returns where a folder holds the mapping of a skeleton, named after the skeleton's joints."""

@@ -26,13 +26,13 @@ class StreamParser:
         With a sender the data are one datagram.
         """
     def reset(self) -> None:
-        """The connection was opened anew: sensors keep their indices, counters go on."""
+        """The connection was reopened: sensors keep their indices, counters continue."""
     def begin_message(self) -> None:
-        """After reset: the wire was idle for so long that what comes first begins a message."""
+        """After reset: the line was idle for so long that the next byte begins a message."""
     def interrupt(self) -> None:
-        """Bytes are missing before what comes next: the message that was begun is forgotten."""
+        """Bytes are missing before the next ones: an incomplete message is dropped."""
     def pop_replies(self) -> list[bytes]:
-        """What the protocol wants answered."""
+        """The answers that the protocol expects, each once."""
     @property
     def counters(self) -> dict[str, int]:
         """What was received and what was lost, each kind by its name."""
@@ -41,14 +41,14 @@ class StreamParser:
         """The sensors seen so far, in the order of their indices."""
     @property
     def last_message(self) -> str:
-        """What the device told last in words, such as an error."""
+        """The last text from the device, such as an error."""
 
 class StreamEncoder:
     """What a device with these sensors would send."""
 
     def __init__(self, driver: str, sensor_names: Sequence[str], **options: object) -> None: ...
     def hello(self) -> list[bytes]:
-        """What the device sends of its own accord when it starts."""
+        """What the device sends when it starts."""
     def encode(
         self,
         time_s: float,
@@ -75,4 +75,4 @@ def start_commands(driver: str, **options: object) -> list[bytes]:
     """What makes the device stream, to be sent one after the other."""
 
 def keep_alive_commands(driver: str, **options: object) -> list[bytes]:
-    """What must be sent every second for the device to go on."""
+    """What must be sent every second to keep the device streaming."""

@@ -34,7 +34,10 @@ void bind_baselines(py::module_& m) {
         });
       },
       py::arg("database"), py::arg("take"), py::arg("excluded_clips") = std::vector<int>{},
-      "Returns for each reading the database frame at the end of the best path, (T,).");
+      R"doc(Returns for each of T readings the database frame at the end of the best path, (T,).
+
+A baseline that plays back the database: the paths are those of the online lazy neighbourhood
+graph. excluded_clips, by index, and copies at other tempos are not used.)doc");
   m.def(
       "nearest_windows",
       [](const Database& database, const Readings& take, int window,
@@ -45,7 +48,10 @@ void bind_baselines(py::module_& m) {
       },
       py::arg("database"), py::arg("take"), py::arg("window") = 10,
       py::arg("excluded_clips") = std::vector<int>{},
-      "Returns for each reading the database frame whose last `window` readings are nearest, (T,).");
+      R"doc(Returns for each of T readings the database frame whose past readings are nearest, (T,).
+
+A baseline after an idea of Slyper and Hodgins 2008; compares the last `window` readings.
+excluded_clips, by index, and copies at other tempos are not used.)doc");
   m.def(
       "nearest_poses",
       [](const Database& database, const Doubles& positions,
@@ -56,7 +62,10 @@ void bind_baselines(py::module_& m) {
         return without_gil([&] { return nearest_poses(*database, columns, excluded_clips); });
       },
       py::arg("database"), py::arg("positions"), py::arg("excluded_clips") = std::vector<int>{},
-      "Returns for each pose (T, 21, 3; heading frame, m) the nearest database frame, (T,).");
+      R"doc(Returns for each pose the database frame whose pose is nearest, (T,).
+
+positions (T, 21, 3) m are in the heading frame. No retrieval from the database can be closer.
+excluded_clips, by index, and copies at other tempos are not used.)doc");
 }
 
 }  // namespace sparse_mocap::python

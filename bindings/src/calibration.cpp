@@ -65,22 +65,37 @@ py::dict calibrate(const std::string& site, const std::string& pose, const Bound
 }  // namespace
 
 void bind_calibration(py::module_& m) {
-  m.def("standing_pose_names", [] {
-    return std::vector<std::string>(standing_pose_names().begin(), standing_pose_names().end());
-  });
-  m.def("guided_movements", [] {
-    py::dict out;
-    for (const auto& movement : guided_movements()) {
-      std::vector<std::string> sites;
-      for (const auto& turn : movement.turns) sites.emplace_back(turn.site);
-      out[py::str(std::string(movement.name))] =
-          py::make_tuple(std::string(movement.instruction), sites);
-    }
-    return out;
-  });
+  m.def(
+      "standing_pose_names",
+      [] {
+        return std::vector<std::string>(standing_pose_names().begin(), standing_pose_names().end());
+      },
+      "Returns the poses that a performer may stand in during a calibration.");
+  m.def(
+      "guided_movements",
+      [] {
+        py::dict out;
+        for (const auto& movement : guided_movements()) {
+          std::vector<std::string> sites;
+          for (const auto& turn : movement.turns) sites.emplace_back(turn.site);
+          out[py::str(std::string(movement.name))] =
+              py::make_tuple(std::string(movement.instruction), sites);
+        }
+        return out;
+      },
+      "Returns each guided movement's instruction and the sites that it calibrates, by its name.");
   m.def("calibrate_sensor", &calibrate, py::arg("site"), py::arg("pose"), py::arg("standing"),
         py::arg("movements"), py::arg("height_m"), py::arg("default_position_along_bone"),
-        py::arg("body") = py::none());
+        py::arg("body") = py::none(),
+        R"doc(Returns one sensor's calibration: the fields of SensorCalibration but its site.
+
+standing and each named movement are a recording: times_s (T,), specific_force (T, 3) in m/s^2
+or g, angular_velocity (T, 3) in rad/s or None, in the sensor's axes. Bones are those of body,
+or of a medium body of that height. default_position_along_bone, 0 to 1, is used where the
+movements do not determine it; None: one that is usual for the site.
+
+Raises ConfigError for an unknown site, pose or movement, for a height or position out of range,
+and for a performer who does not stand still long enough.)doc");
 }
 
 }  // namespace sparse_mocap::python

@@ -3,7 +3,6 @@
 
 #include <utility>
 
-
 namespace sparse_mocap::python {
 
 py::str text_of(const std::string& text) {

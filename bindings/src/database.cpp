@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "common.hpp"
-#include "sparse_mocap/database/model.hpp"
 #include "sparse_mocap/database/clip_motion.hpp"
+#include "sparse_mocap/database/model.hpp"
 #include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/database/stored_models.hpp"
 

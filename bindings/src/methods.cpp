@@ -47,8 +47,7 @@ py::dict experiment_dict(const Experiment& experiment) {
     for (const auto& [name, value] : variant.options) options[name.c_str()] = value;
     variants.append(py::make_tuple(variant.label, options));
   }
-  for (const auto& pair : experiment.pairs)
-    pairs.append(py::make_tuple(pair.training, pair.test));
+  for (const auto& pair : experiment.pairs) pairs.append(py::make_tuple(pair.training, pair.test));
   py::dict out;
   out["name"] = experiment.name;
   out["help"] = experiment.help;
@@ -137,7 +136,9 @@ std::shared_ptr<Model> train(const std::string& method, const std::vector<Traini
 void bind_methods(py::module_& m) {
   m.def(
       "method_infos", [] { return list_of(methods(), method_dict); },
-      "Returns what is known of each method, the default first, as JSON has it.");
+      R"doc(Returns the methods' descriptions, the default first, as values that JSON can hold.
+
+sparse_mocap.method_info() returns one of them as a MethodInfo.)doc");
   py::class_<ReconstructionRequest>(m, "ReconstructionRequest",
                                     "How a performance is to be reconstructed.")
       .def(py::init(&request_from), py::kw_only(), py::arg("method") = "", py::arg("preset") = "",
@@ -145,15 +146,23 @@ void bind_methods(py::module_& m) {
            py::arg("database") = py::none(), py::arg("model") = py::none(),
            py::arg("body") = py::none(), py::arg("excluded_clips") = std::vector<int>{},
            py::arg("tracker_yaw_rad") = 0.0,
-           py::arg("tracker_origin_m") = std::vector<double>{0.0, 0.0, 0.0});
+           py::arg("tracker_origin_m") = std::vector<double>{0.0, 0.0, 0.0},
+           R"doc(An empty method or preset means the default; options map names to values as text.
+
+database, model and body (a standard skeleton) are given where the method needs them.
+excluded_clips are indices of database clips that are not used. tracker_* as in
+ReadingStream. Raises ValueError unless tracker_origin_m has three numbers.)doc");
   py::class_<TrainingClip>(m, "TrainingClip", "One example that a model is trained from.")
       .def(py::init(&clip_from), py::arg("name"), py::arg("motion"), py::kw_only(),
-           py::arg("motion_class") = "", py::arg("readings") = py::none());
-  m.def("train", &train, py::arg("method"), py::arg("clips"), py::kw_only(),
-        py::arg("preset") = "", py::arg("options") = std::map<std::string, std::string>{},
-        py::arg("progress") = py::none(),
-        "Returns the Model that a method learns from TrainingClips. Raises ConfigError and "
-        "Cancelled.");
+           py::arg("motion_class") = "", py::arg("readings") = py::none(),
+           R"doc(Takes a motion on a standard skeleton; an empty motion_class is unknown.
+
+readings were recorded with the motion, at its rate; None: they are simulated.)doc");
+  m.def("train", &train, py::arg("method"), py::arg("clips"), py::kw_only(), py::arg("preset") = "",
+        py::arg("options") = std::map<std::string, std::string>{}, py::arg("progress") = py::none(),
+        R"doc(Returns the model that a method learns from clips.
+
+Raises ConfigError for a method that learns nothing and for what it cannot use, and Cancelled.)doc");
 }
 
 }  // namespace sparse_mocap::python

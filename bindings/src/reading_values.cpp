@@ -95,6 +95,60 @@ Eigen::MatrixXd absent(Eigen::Index rows, Eigen::Index columns) {
   return Eigen::MatrixXd::Constant(rows, columns, std::nan(""));
 }
 
+using ReadingsClass = py::class_<Readings>;
+
+void bind_values(ReadingsClass& readings) {
+  readings.def_property_readonly("times_s", &times_of, "(T,) s, ascending.")
+      .def_property_readonly(
+          "specific_force",
+          [](const Readings& all) { return stacked(all, &Reading::specific_force); },
+          "(T, S, 3) m/s^2, gravity included: 9.81 upwards at rest.")
+      .def_property_readonly(
+          "angular_velocity",
+          [](const Readings& all) { return stacked(all, &Reading::angular_velocity); },
+          "(T, S, 3) rad/s.")
+      .def_property_readonly(
+          "gravity_direction",
+          [](const Readings& all) { return stacked(all, &Reading::gravity_direction); },
+          "(T, S, 3) unit vectors against gravity, upwards.")
+      .def_property_readonly(
+          "position", [](const Readings& all) { return stacked(all, &Reading::position); },
+          "(T, S, 3) m, world.")
+      .def_property_readonly(
+          "orientation", [](const Readings& all) { return stacked(all, &Reading::orientation); },
+          "(T, S, 4) R_world_sensor, w x y z.");
+}
+
+void bind_sensors_of(ReadingsClass& readings) {
+  readings
+      .def_property_readonly(
+          "sites",
+          [](const Readings& all) {
+            std::vector<std::string> names;
+            for (const Sensor& sensor : all.sensors)
+              names.emplace_back(all_sites()[static_cast<std::size_t>(sensor.site)].name);
+            return names;
+          },
+          "The S sensor locations.")
+      .def_property_readonly(
+          "positions_along_bone",
+          [](const Readings& all) {
+            std::vector<double> positions;
+            for (const Sensor& sensor : all.sensors)
+              positions.push_back(sensor.position_along_bone);
+            return positions;
+          },
+          "S positions, from 0 at the joint near the body to 1 at the bone's far end.")
+      .def_property_readonly(
+          "channels",
+          [](const Readings& all) {
+            std::vector<std::vector<std::string_view>> channels;
+            for (const Sensor& sensor : all.sensors) channels.push_back(names_of(sensor.channels));
+            return channels;
+          },
+          "The names of each sensor's channels, of CHANNEL_NAMES.");
+}
+
 }  // namespace
 
 Channels channels_from(const std::vector<std::string>& names) {
@@ -133,48 +187,25 @@ void bind_reading_values(py::module_& m) {
       names[i] = py::str(std::string(name_of(all_channels()[i])));
     return names;
   }();
-  py::class_<Readings>(m, "Readings")
+  ReadingsClass readings(
+      m, "Readings",
+      R"doc(The values of S sensors at T times, in each sensor's axes unless said otherwise.
+
+An index or a slice selects times; len() is T.)doc");
+  readings
       .def(py::init(&readings_from), py::arg("sites"), py::arg("times_s"), py::kw_only(),
            py::arg("specific_force") = py::none(), py::arg("angular_velocity") = py::none(),
            py::arg("gravity_direction") = py::none(), py::arg("position") = py::none(),
-           py::arg("orientation") = py::none(), py::arg("positions_along_bone") = py::none())
+           py::arg("orientation") = py::none(), py::arg("positions_along_bone") = py::none(),
+           R"doc(Takes arrays shaped like the properties below; a channel that is not given is NaN.
+
+A sensor has those channels that are finite at some time; positions_along_bone are 1 by
+default. Raises ConfigError for an unknown site and ValueError for other shapes.)doc")
       .def("__len__", [](const Readings& all) { return all.readings.size(); })
       .def("__getitem__", &at, py::arg("index"))
-      .def("__getitem__", &sliced, py::arg("index"))
-      .def_property_readonly("times_s", &times_of)
-      .def_property_readonly(
-          "specific_force",
-          [](const Readings& all) { return stacked(all, &Reading::specific_force); })
-      .def_property_readonly(
-          "angular_velocity",
-          [](const Readings& all) { return stacked(all, &Reading::angular_velocity); })
-      .def_property_readonly(
-          "gravity_direction",
-          [](const Readings& all) { return stacked(all, &Reading::gravity_direction); })
-      .def_property_readonly("position",
-                             [](const Readings& all) { return stacked(all, &Reading::position); })
-      .def_property_readonly(
-          "orientation", [](const Readings& all) { return stacked(all, &Reading::orientation); })
-      .def_property_readonly(
-          "sites",
-          [](const Readings& all) {
-            std::vector<std::string> names;
-            for (const Sensor& sensor : all.sensors)
-              names.emplace_back(all_sites()[static_cast<std::size_t>(sensor.site)].name);
-            return names;
-          })
-      .def_property_readonly("positions_along_bone",
-                             [](const Readings& all) {
-                               std::vector<double> positions;
-                               for (const Sensor& sensor : all.sensors)
-                                 positions.push_back(sensor.position_along_bone);
-                               return positions;
-                             })
-      .def_property_readonly("channels", [](const Readings& all) {
-        std::vector<std::vector<std::string_view>> channels;
-        for (const Sensor& sensor : all.sensors) channels.push_back(names_of(sensor.channels));
-        return channels;
-      });
+      .def("__getitem__", &sliced, py::arg("index"));
+  bind_values(readings);
+  bind_sensors_of(readings);
 }
 
 }  // namespace sparse_mocap::python

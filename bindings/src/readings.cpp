@@ -108,49 +108,92 @@ py::array_t<double> directions(const Doubles& times_s, const Doubles& force, con
 }
 
 void bind_sensor_input(py::module_& m) {
-  py::class_<SensorInput>(m, "SensorInput")
+  py::class_<SensorInput>(
+      m, "SensorInput",
+      "A sensor of a performance: its location, the channels to use and how to correct them.")
       .def(py::init(&input_from), py::arg("site"),
            py::arg("channels") = std::vector<std::string>{"specific_force"}, py::kw_only(),
            py::arg("position_along_bone") = 1.0, py::arg("scale") = 1.0,
-           py::arg("R_site_sensor") = py::none(), py::arg("gyroscope_bias") = py::none())
+           py::arg("R_site_sensor") = py::none(), py::arg("gyroscope_bias") = py::none(),
+           R"doc(Takes a site of site_names() and channels of CHANNEL_NAMES.
+
+position_along_bone is 0 at the joint near the body and 1 at the bone's far end. Specific
+forces times scale are m/s^2; R_site_sensor (3, 3) is applied after the scale;
+gyroscope_bias (3,) is in rad/s and the sensor's own axes. Raises ConfigError for an unknown
+site or channel.)doc")
       .def_property_readonly(
           "site",
           [](const SensorInput& input) {
             return std::string(all_sites()[static_cast<std::size_t>(input.sensor.site)].name);
-          })
+          },
+          "The sensor location, one of site_names().")
       .def_property_readonly(
           "position_along_bone",
-          [](const SensorInput& input) { return input.sensor.position_along_bone; })
+          [](const SensorInput& input) { return input.sensor.position_along_bone; },
+          "From 0 at the joint near the body to 1 at the bone's far end.")
       .def_property_readonly(
-          "channels", [](const SensorInput& input) { return names_of(input.sensor.channels); })
-      .def("corrected", &corrected, py::arg("specific_force"),
-           py::arg("angular_velocity") = py::none(), py::arg("orientation") = py::none());
+          "channels", [](const SensorInput& input) { return names_of(input.sensor.channels); },
+          "The channels to use, in the order of CHANNEL_NAMES.")
+      .def(
+          "corrected", &corrected, py::arg("specific_force"),
+          py::arg("angular_velocity") = py::none(), py::arg("orientation") = py::none(),
+          R"doc(Returns the values that an ideal sensor would have measured, None for what is not given.
+
+specific_force (T, 3), in m/s^2 once scaled; angular_velocity (T, 3) rad/s; orientation
+(T, 4) R_world_sensor, w x y z. Given in the sensor's axes, returned in its site's.)doc");
 }
 
-}  // namespace
+void bind_stream(py::module_& m) {
+  py::class_<ReadingStream>(
+      m, "ReadingStream",
+      R"doc(Turns sensors' samples into readings at a fixed rate, live and for whole takes.
 
-void bind_readings(py::module_& m) {
-  m.attr("LARGEST_CLOCK_DRIFT") = kLargestClockDrift;
-  bind_reading_values(m);
-  bind_sensor_input(m);
-  py::class_<ReadingStream>(m, "ReadingStream")
+Samples are corrected, low-passed and resampled. Where a sensor sent nothing for longer than
+0.1 s, its readings are NaN.)doc")
       .def(py::init(&stream_from), py::arg("sensors"), py::arg("rate_hz"), py::kw_only(),
            py::arg("gravity_average") = "causal", py::arg("tracker_yaw_rad") = 0.0,
-           py::arg("tracker_origin_m") = py::none())
+           py::arg("tracker_origin_m") = py::none(),
+           R"doc(gravity_average: "causal" averages over the past, "whole_take" over the whole take.
+
+With the latter flush() returns all readings. tracker_yaw_rad and tracker_origin_m (3,)
+place the tracker's world, of positions and orientations, in the performer's: a turn about
+the vertical, then a shift. Raises ValueError without sensors, for a sensor without
+channels, and for a rate that is not positive.)doc")
       .def("push", &push, py::arg("sensor"), py::arg("times_s"),
            py::arg("specific_force") = py::none(), py::arg("angular_velocity") = py::none(),
-           py::arg("position") = py::none(), py::arg("orientation") = py::none())
-      .def("push_arrivals", &push_arrivals, py::arg("sensor"), py::arg("arrival_s"),
-           py::arg("device_time_s"), py::arg("specific_force") = py::none(),
-           py::arg("angular_velocity") = py::none(), py::arg("position") = py::none(),
-           py::arg("orientation") = py::none())
+           py::arg("position") = py::none(), py::arg("orientation") = py::none(),
+           R"doc(Takes N samples of one sensor by its index; returns how many it used.
+
+times_s (N,) are on the clock that all sensors share. specific_force and angular_velocity
+(N, 3) are in the sensor's axes and units, position (N, 3) m and orientation (N, 4)
+R_world_sensor in the tracker's world. Samples that are not finite or not after the sensor's
+last one are skipped.)doc")
+      .def(
+          "push_arrivals", &push_arrivals, py::arg("sensor"), py::arg("arrival_s"),
+          py::arg("device_time_s"), py::arg("specific_force") = py::none(),
+          py::arg("angular_velocity") = py::none(), py::arg("position") = py::none(),
+          py::arg("orientation") = py::none(),
+          R"doc(Takes N samples that arrived together, as push does; the shared clock is the host's.
+
+arrival_s (N,) is when they were received; device_time_s (N,) is the device's clock,
+unwrapped, or NaN for a device without one. Returns how many samples it used.)doc")
       .def(
           "ready",
           [](ReadingStream& stream, double now_s) { return told(stream, stream.ready(now_s)); },
-          py::arg("now_s"))
-      .def("flush", [](ReadingStream& stream) { return told(stream, stream.flush()); })
-      .def_property_readonly("delay_s", &ReadingStream::delay_s)
-      .def_property_readonly("rate_hz", &ReadingStream::rate_hz);
+          py::arg("now_s"),
+          R"doc(Returns the next readings that are complete at now_s, on the clock of the samples.
+
+A late sensor is waited for 0.1 s; then the readings come without it.)doc")
+      .def(
+          "flush", [](ReadingStream& stream) { return told(stream, stream.flush()); },
+          "Returns all remaining readings, up to the last sample, when the performance has ended.")
+      .def_property_readonly(
+          "delay_s", &ReadingStream::delay_s,
+          "How long after its time a reading is ready when no sensor is late, in s.")
+      .def_property_readonly("rate_hz", &ReadingStream::rate_hz, "Readings a second.");
+}
+
+void bind_recording_functions(py::module_& m) {
   m.def(
       "channels_of",
       [](const Doubles& specific_force, const OptionalDoubles& turn,
@@ -159,16 +202,30 @@ void bind_readings(py::module_& m) {
                                                    specific_force, turn, position, orientation)));
       },
       py::arg("specific_force"), py::arg("angular_velocity") = py::none(),
-      py::arg("position") = py::none(), py::arg("orientation") = py::none());
+      py::arg("position") = py::none(), py::arg("orientation") = py::none(),
+      R"doc(Returns which channels of CHANNEL_NAMES a recording of T samples has.
+
+A gyroscope that reads nothing but zeros does not count: devices without one may send them.)doc");
   m.def("gravity_directions", &directions, py::arg("times_s"), py::arg("specific_force"),
-        py::arg("angular_velocity"), py::kw_only(), py::arg("average") = "causal");
+        py::arg("angular_velocity"), py::kw_only(), py::arg("average") = "causal",
+        R"doc(Returns unit vectors against gravity, upwards, in a sensor's axes, (T, 3).
+
+specific_force (T, 3) m/s^2 and angular_velocity (T, 3) rad/s are in the sensor's axes; average
+is a gravity_average of ReadingStream. NaN in the first half second of the causal average, and
+everywhere when the gyroscope reads nothing but zeros. Inclination as in VQF (Laidig and Seel,
+Information Fusion 91, 2023).)doc");
+}
+
+void bind_times(py::module_& m) {
   m.def(
       "spread_evenly",
       [](const Doubles& arrival_s) {
         require_shape(arrival_s, {-1}, "arrival_s");
         return array_of(spread_evenly(span_of(arrival_s)));
       },
-      py::arg("arrival_s"));
+      py::arg("arrival_s"), R"doc(Returns ascending times (T,) of samples by their arrivals (T,), s.
+
+Samples that arrived at once are spread over the time before.)doc");
   m.def(
       "host_times",
       [](const Doubles& device_s, const Doubles& arrival_s) {
@@ -177,7 +234,24 @@ void bind_readings(py::module_& m) {
         const HostTimes found = host_times(span_of(device_s), span_of(arrival_s));
         return py::make_tuple(array_of(found.times_s), found.rate);
       },
-      py::arg("device_s"), py::arg("arrival_s"));
+      py::arg("device_s"), py::arg("arrival_s"),
+      R"doc(Returns when samples were taken, (T,) s on the host's clock, and its rate.
+
+The rate is host seconds per device second. device_s (T,) is unwrapped, or NaN for a device
+without a clock; then the arrivals are spread evenly. A rate further from 1 than
+LARGEST_CLOCK_DRIFT, such as that of an emulator that plays faster, is returned, but the times
+keep the device's seconds. Raises ValueError when sizes differ.)doc");
+}
+
+}  // namespace
+
+void bind_readings(py::module_& m) {
+  m.attr("LARGEST_CLOCK_DRIFT") = kLargestClockDrift;
+  bind_reading_values(m);
+  bind_sensor_input(m);
+  bind_stream(m);
+  bind_recording_functions(m);
+  bind_times(m);
 }
 
 }  // namespace sparse_mocap::python

@@ -82,7 +82,9 @@ class BoundLive {
         skeleton_(std::make_shared<const Skeleton>(live_.skeleton())) {}
 
   LiveReconstructor& live() { return live_; }
-  std::vector<BoundEstimate> advance(double now_s) { return bound(live_.advance(now_s), skeleton_); }
+  std::vector<BoundEstimate> advance(double now_s) {
+    return bound(live_.advance(now_s), skeleton_);
+  }
   std::vector<BoundEstimate> flush() { return bound(live_.flush(), skeleton_); }
   const Skeleton& skeleton() const { return *skeleton_; }
 
@@ -99,78 +101,95 @@ py::array_t<double> contacts_of(const Reconstruction& solved) {
   return out;
 }
 
-void bind_values(py::module_& m) {
-  py::class_<SensorRecording>(m, "SensorRecording", "What one sensor measured in a performance.")
+void bind_recording(py::module_& m) {
+  py::class_<SensorRecording>(m, "SensorRecording", "T samples of one sensor.")
       .def(py::init(&recording_from), py::arg("times_s"), py::arg("specific_force") = py::none(),
            py::arg("angular_velocity") = py::none(), py::arg("position") = py::none(),
-           py::arg("orientation") = py::none());
+           py::arg("orientation") = py::none(),
+           R"doc(times_s (T,) ascend and are on the clock that all sensors share.
+
+specific_force (T, 3), in m/s^2 once calibrated, and angular_velocity (T, 3) rad/s are in
+the sensor's axes; position (T, 3) m and orientation (T, 4) R_world_sensor, w x y z, in the
+tracker's world. None and NaN: not measured. Raises ValueError for other shapes.)doc");
+}
+
+void bind_estimate(py::module_& m) {
   py::class_<BoundEstimate>(m, "PoseEstimate", "One reconstructed frame.")
       .def_property_readonly(
           "time_s", [](const BoundEstimate& b) { return b.estimate.time_s; },
-          "When the sensors read it, s.")
+          "When the sensors measured it, in s on the clock of the samples.")
       .def_property_readonly(
           "rotations", [](const BoundEstimate& b) { return rotations_of(b.estimate); },
           "(J, 4) w x y z: each joint relative to its parent, the root in the world.")
       .def_property_readonly(
           "root_position",
           [](const BoundEstimate& b) { return vector_of(b.estimate.root_position); },
-          "(3,) m, world.")
+          "(3,) m, world, pivot of the root.")
       .def_property_readonly("positions", &heading_positions,
-                             "(J, 3) m: the joints in the heading frame.")
+                             "(J, 3) m, the joints' ends in the heading frame.")
       .def_property_readonly(
           "contacts", [](const BoundEstimate& b) { return vector_of(b.estimate.contacts); },
-          "(2,) probability that the left and the right foot stand.")
+          "(2,) probability that the left and the right foot are on the ground.")
       .def_property_readonly(
           "diagnostics", [](const BoundEstimate& b) { return diagnostics_of(b.estimate); },
-          "What the method says of the frame: name to array, units in the names.");
+          "Further results of the method: name to array, units in the names.");
+}
 
+void bind_result(py::module_& m) {
   py::class_<Reconstruction>(m, "Reconstruction", "A reconstructed take: T frames, J joints.")
       .def_property_readonly("motion", &Reconstruction::motion,
                              "The motion in the world, on the method's skeleton.")
       .def_property_readonly(
           "readings",
-          [](const Reconstruction& r) { return Readings{r.sensors, r.readings}; },
-          "What the method was given, at its rate.")
+          [](const Reconstruction& r) {
+            return Readings{r.sensors, r.readings};
+          },
+          "The T readings that the method used.")
       .def_readonly("rate_hz", &Reconstruction::rate_hz, "Frames a second.")
       .def_readonly("latency_s", &Reconstruction::latency_s,
-                    "How long after its reading a live pose is ready, s; None for best quality.")
-      .def_property_readonly("contacts", &contacts_of,
-                             "(T, 2) probability that the left and the right foot stand.")
-      .def_property_readonly("diagnostics", &stacked_diagnostics,
-                             "What the method says of each frame: name to (T, N), units in the "
-                             "names.");
+                    "How long after its reading a live pose is ready, in s; None for best quality.")
+      .def_property_readonly(
+          "contacts", &contacts_of,
+          "(T, 2) probability that the left and the right foot are on the ground.")
+      .def_property_readonly(
+          "diagnostics", &stacked_diagnostics,
+          "Further results of the method: name to (T, N), units in the names; NaN where absent.");
 }
 
 void bind_live(py::module_& m) {
   py::class_<BoundLive>(m, "LiveReconstructor",
-                        "Sensors' samples to poses as they come; use it from one thread.")
+                        "Turns sensors' samples into poses as they arrive; use it from one thread.")
       .def(py::init([](const std::vector<SensorInput>& sensors,
                        const ReconstructionRequest& request, int largest_backlog) {
              const py::gil_scoped_release release;
              return std::make_unique<BoundLive>(sensors, request, largest_backlog);
            }),
-           py::arg("sensors"), py::arg("request"), py::kw_only(), py::arg("largest_backlog") = 0)
+           py::arg("sensors"), py::arg("request"), py::kw_only(), py::arg("largest_backlog") = 0,
+           R"doc(largest_backlog: when more readings wait, all but the newest are skipped; 0: never.
+
+After a skip the method starts again without a past. Raises ConfigError for what the method
+cannot use.)doc")
       .def_property_readonly(
           "readings", [](BoundLive& b) -> ReadingStream& { return b.live().readings(); },
           py::return_value_policy::reference_internal,
-          "The stream that takes the sensors' samples.")
+          "The stream to push the sensors' samples into.")
       .def("advance", &BoundLive::advance, py::arg("now_s"),
            py::call_guard<py::gil_scoped_release>(),
-           "Returns the poses that can be had by now, on the clock of the samples.")
+           "Returns the next poses that are ready at now_s, on the clock of the samples.")
       .def("flush", &BoundLive::flush, py::call_guard<py::gil_scoped_release>(),
-           "Returns the remaining poses, when the performance ends.")
+           "Returns the remaining poses when the performance has ended.")
       .def_property_readonly("skeleton", &BoundLive::skeleton, "The skeleton of the poses.")
       .def_property_readonly(
           "rate_hz", [](BoundLive& b) { return b.live().rate_hz(); }, "Poses a second.")
       .def_property_readonly(
           "latency_s", [](BoundLive& b) { return b.live().latency_s(); },
-          "How long after its reading a pose is ready, s.")
+          "How long after its reading a pose is ready, in s.")
       .def_property_readonly(
           "history_s", [](BoundLive& b) { return b.live().history_s(); },
-          "How far back the readings of a pose reach, s.")
+          "How far back the readings reach that a pose depends on, in s.")
       .def_property_readonly(
           "num_skipped", [](BoundLive& b) { return b.live().num_skipped(); },
-          "Readings that came faster than poses could be made of them.");
+          "How many readings were skipped because they came faster than poses could be computed.");
 }
 
 Reconstruction reconstruct_take(const std::vector<SensorRecording>& take,
@@ -187,12 +206,17 @@ Reconstruction reconstruct_take(const std::vector<SensorRecording>& take,
 
 void bind_reconstruction(py::module_& m) {
   bind_methods(m);
-  bind_values(m);
+  bind_recording(m);
+  bind_estimate(m);
+  bind_result(m);
   bind_live(m);
   m.def("reconstruct", &reconstruct_take, py::arg("take"), py::arg("sensors"), py::arg("request"),
         py::kw_only(), py::arg("best_quality") = false, py::arg("progress") = py::none(),
-        "Returns the Reconstruction of a whole take: a SensorRecording and a SensorInput a sensor. "
-        "Raises ConfigError and Cancelled.");
+        R"doc(Returns the motion of a whole take: a recording and an input for each sensor.
+
+best_quality uses the whole take for each pose; otherwise poses are those of a live preview.
+Raises ConfigError for what the method cannot use, Cancelled, and ValueError unless there are
+as many recordings as sensors.)doc");
 }
 
 }  // namespace sparse_mocap::python

@@ -55,48 +55,100 @@ std::map<std::string, std::pair<double, double>> errors_of(const Mapping& mappin
   return out;
 }
 
-}  // namespace
+using release = py::call_guard<py::gil_scoped_release>;
 
-void bind_retargeting(py::module_& m) {
-  using release = py::call_guard<py::gil_scoped_release>;
-  py::class_<Mapping>(m, "SkeletonMapping")
-      .def_property_readonly("joints", &Mapping::joints)
+void bind_mapping_class(py::module_& m) {
+  py::class_<Mapping>(
+      m, "SkeletonMapping",
+      R"doc(How a rig and the standard skeleton of 21 joints correspond, for both directions.
+
+A rig is any skeleton of a human body: of a motion file or of an animator's character.)doc")
+      .def_property_readonly("joints", &Mapping::joints,
+                             "The rig's joint for each standard joint that it has.")
       .def_property_readonly(
-          "is_by_names", [](const Mapping& mapping) { return mapping.found.joints.is_by_names; })
-      .def_property_readonly("unit_scale",
-                             [](const Mapping& mapping) { return mapping.found.unit_scale; })
-      .def_property_readonly("R_world_file",
-                             [](const Mapping& mapping) {
-                               auto out = new_array({3, 3});
-                               auto R = out.mutable_unchecked<2>();
-                               for (int row = 0; row < 3; ++row)
-                                 for (int column = 0; column < 3; ++column)
-                                   R(row, column) = mapping.found.R_world_file(row, column);
-                               return out;
-                             })
-      .def_property_readonly("warnings",
-                             [](const Mapping& mapping) { return mapping.found.warnings; })
+          "is_by_names", [](const Mapping& mapping) { return mapping.found.joints.is_by_names; },
+          "False where limbs were recognised by their shape.")
+      .def_property_readonly(
+          "unit_scale", [](const Mapping& mapping) { return mapping.found.unit_scale; },
+          "The rig's lengths times this are metres.")
+      .def_property_readonly(
+          "R_world_file",
+          [](const Mapping& mapping) {
+            auto out = new_array({3, 3});
+            auto R = out.mutable_unchecked<2>();
+            for (int row = 0; row < 3; ++row)
+              for (int column = 0; column < 3; ++column)
+                R(row, column) = mapping.found.R_world_file(row, column);
+            return out;
+          },
+          "(3, 3) rotation from the rig's world to one with y up.")
+      .def_property_readonly(
+          "warnings", [](const Mapping& mapping) { return mapping.found.warnings; },
+          "What was guessed about the rig, one line each.")
       .def("to_standard", &mapped_to_standard, py::arg("motion"), py::arg("skeleton") = py::none(),
-           release())
-      .def("to_rig", &mapped_to_rig, py::arg("motion"), release())
-      .def("limb_errors_rad", &errors_of, py::arg("motion"), py::arg("standard"), release());
+           release(), R"doc(Returns the rig's motion on a standard skeleton, and warnings.
+
+skeleton: the standard skeleton to use; None: one of the rig's proportions. Limbs point
+where the rig's do; root translation is scaled by the ratio of leg lengths. Raises
+ValueError for a motion of a skeleton with other joints.)doc")
+      .def("to_rig", &mapped_to_rig, py::arg("motion"), release(),
+           R"doc(Returns a motion of the standard skeleton on the rig, the reverse of to_standard.
+
+Limbs point where the standard's do; joints that map to nothing keep their rest; root
+translation is scaled by the ratio of leg lengths. Raises ValueError for a motion that is
+not on a standard skeleton.)doc")
+      .def(
+          "limb_errors_rad", &errors_of, py::arg("motion"), py::arg("standard"), release(),
+          R"doc(Returns the mean and worst angle between a motion's limbs and those of its transfer.
+
+By the standard joint of each thigh, shank, upper arm and forearm, over all frames;
+standard is what to_standard made of the motion. Raises ValueError for a motion of a
+skeleton with other joints.)doc");
+}
+
+void bind_mapping_functions(py::module_& m) {
   m.def("map_skeleton", &map_motion, py::arg("motion"), py::arg("by_hand") = JointNames(),
-        release());
+        release(), R"doc(Returns the mapping of a motion's skeleton, with the rest poses aligned.
+
+by_hand: the skeleton's joint for some standard ones; the others are found by their names, then
+by their shape. Raises MappingError when it is not a human body.)doc");
   m.def(
       "standard_motion",
       [](const Motion& motion, const std::optional<Skeleton>& skeleton, const JointNames& by_hand) {
         return mapped_to_standard(map_motion(motion, by_hand), motion, skeleton);
       },
       py::arg("motion"), py::arg("skeleton") = py::none(), py::arg("by_hand") = JointNames(),
-      release());
-  m.def("standard_joint_names", [] {
-    return std::vector<std::string>(standard_joint_names().begin(), standard_joint_names().end());
-  });
-  m.def("read_mapping", &read_mapping, py::arg("path"));
-  m.def("write_mapping", &write_mapping, py::arg("path"), py::arg("joints"));
-  m.def("remembered_mapping", &remembered_mapping, py::arg("folder"), py::arg("skeleton"));
-  m.def("remembered_mapping_path", &remembered_mapping_path, py::arg("folder"),
-        py::arg("skeleton"));
+      release(), "Returns what map_skeleton and then to_standard return. Raises MappingError.");
+  m.def(
+      "standard_joint_names",
+      [] {
+        return std::vector<std::string>(standard_joint_names().begin(),
+                                        standard_joint_names().end());
+      },
+      "Returns the standard skeleton's 21 joints, the root first.");
+}
+
+void bind_mapping_files(py::module_& m) {
+  m.def("read_mapping", &read_mapping, py::arg("path"),
+        "Returns a file's mapping by hand, from standard joints to a rig's. Raises FormatError.");
+  m.def("write_mapping", &write_mapping, py::arg("path"), py::arg("joints"),
+        "Writes a mapping by hand atomically. Raises OSError.");
+  m.def(
+      "remembered_mapping", &remembered_mapping, py::arg("folder"), py::arg("skeleton"),
+      R"doc(Returns the mapping by hand that a folder holds for a skeleton; empty when there is none.
+
+Raises FormatError when its file cannot be read.)doc");
+  m.def(
+      "remembered_mapping_path", &remembered_mapping_path, py::arg("folder"), py::arg("skeleton"),
+      "Returns where a folder holds the mapping of a skeleton, named after the skeleton's joints.");
+}
+
+}  // namespace
+
+void bind_retargeting(py::module_& m) {
+  bind_mapping_class(m);
+  bind_mapping_functions(m);
+  bind_mapping_files(m);
 }
 
 }  // namespace sparse_mocap::python

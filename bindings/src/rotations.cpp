@@ -48,9 +48,12 @@ void bind_rotations(py::module_& m) {
   const Eigen::Vector4d R_world_zup = wxyz_of(kR_world_zup);
   m.attr("R_WORLD_ZUP") =
       py::make_tuple(R_world_zup[0], R_world_zup[1], R_world_zup[2], R_world_zup[3]);
-  m.def("rotation_product", &product, py::arg("left"), py::arg("right"));
-  m.def("rotated", &rotated, py::arg("rotations"), py::arg("vectors"));
-  m.def("rotations_from_matrices", &from_matrices, py::arg("matrices"));
+  m.def("rotation_product", &product, py::arg("left"), py::arg("right"),
+        "Returns left times right, (T, 4) each, w x y z: the rotation by right and then by left.");
+  m.def("rotated", &rotated, py::arg("rotations"), py::arg("vectors"),
+        "Returns vectors (T, 3), each turned by its rotation (T, 4), w x y z.");
+  m.def("rotations_from_matrices", &from_matrices, py::arg("matrices"),
+        "Returns the unit quaternions (T, 4), w x y z, of rotation matrices (T, 3, 3).");
 }
 
 }  // namespace sparse_mocap::python

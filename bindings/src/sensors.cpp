@@ -42,8 +42,7 @@ py::dict simulate(const Motion& motion, const std::vector<std::string>& site_nam
   if (motion.num_frames() < 3) throw py::value_error("the motion has fewer than 3 frames");
   if (positions_along_bone && positions_along_bone->size() != site_names.size())
     throw py::value_error("positions_along_bone must have one entry a site");
-  const auto positions =
-      positions_along_bone.value_or(std::vector<double>(site_names.size(), 1.0));
+  const auto positions = positions_along_bone.value_or(std::vector<double>(site_names.size(), 1.0));
   std::vector<Site> sites;
   for (const auto& name : site_names)
     sites.push_back(all_sites()[static_cast<std::size_t>(find_site(name))]);
@@ -93,14 +92,31 @@ py::array_t<double> filtered(const Doubles& times_s, const Doubles& values,
 
 void bind_sensors(py::module_& m) {
   m.attr("FILTER_REACH_S") = kReadingFilter.reach_s();
-  m.def("site_names", [] {
-    std::vector<std::string> names;
-    for (const auto& site : all_sites()) names.emplace_back(site.name);
-    return names;
-  });
+  m.def(
+      "site_names",
+      [] {
+        std::vector<std::string> names;
+        for (const auto& site : all_sites()) names.emplace_back(site.name);
+        return names;
+      },
+      "Returns all sensor locations, such as left_wrist, in the order of a database's arrays.");
   m.def("simulate", &simulate, py::arg("motion"), py::arg("sites"), py::arg("rate_hz"),
-        py::arg("positions_along_bone") = py::none());
-  m.def("filtered_at", &filtered, py::arg("times_s"), py::arg("values"), py::arg("wanted_s"));
+        py::arg("positions_along_bone") = py::none(),
+        R"doc(Returns what ideal sensors read during a motion of the standard skeleton.
+
+``time_s`` (T,); ``specific_force`` (S, T, 3) m/s^2 and ``angular_velocity`` (S, T, 3) rad/s,
+both in the sensor's axes; ``position`` (S, T, 3) m, world; ``orientation`` (S, T, 4)
+R_world_sensor, w x y z. See Tautges et al. 2011, section 3.
+
+positions_along_bone has a number for each site, from 0 at the joint near the body to 1, the
+default, at the bone's far end. Raises ConfigError for an unknown site, and ValueError for a
+motion of fewer than 3 frames, a rate that is not positive or another number of positions.)doc");
+  m.def(
+      "filtered_at", &filtered, py::arg("times_s"), py::arg("values"), py::arg("wanted_s"),
+      R"doc(Returns values (T, C) at times (T,) low-passed and sampled at wanted_s (N,), as (N, C).
+
+The filter is the Gaussian one, -3 dB at 11.5 Hz, that a database's readings passed; times_s
+ascend, evenly or not. Raises ValueError when they are empty.)doc");
 }
 
 }  // namespace sparse_mocap::python
