@@ -51,7 +51,8 @@ class SourceSkeleton:
 class MotionDatabase:
     """An opened .smdb, read-only and thread-safe."""
 
-    def __init__(self, path: Path) -> None: ...
+    def __init__(self, path: Path) -> None:
+        """Checks the whole file. Raises FormatError."""
     path: str
     num_frames: int
     rate_hz: float
@@ -153,7 +154,16 @@ def build_database(
     label_warnings: Sequence[str] = (),
     **options: Unpack[_ImportOptions],
 ) -> BuildReport:
-    """Builds a database; labels are actor, class, origin and license by a motion file's path."""
+    """Builds a database from motion files, or folders of them, and writes it to output.
+
+    rate_hz is the database's frame rate; mirror, reverse and tempo_copies (factors) add copies of
+    each clip; exclude: glob patterns of files to leave out; labels: actor, class, origin and
+    license by a motion file's path. strict: the first file that cannot be used ends it, otherwise
+    it is skipped; keep_duplicates: files with the same motion are all taken; num_threads 0: one
+    for each processor; by_hand: the source's joint by standard joint; mappings: the file of
+    remembered mappings. Raises FormatError, and Cancelled if progress returns False; the output
+    is then left as it was.
+    """
 
 def add_to_database(
     database: Path,
@@ -165,7 +175,13 @@ def add_to_database(
     label_warnings: Sequence[str] = (),
     **options: Unpack[_ImportOptions],
 ) -> BuildReport:
-    """Adds motion files to a database; labels as above."""
+    """Adds motion files to a database, with the copies that it was built with.
+
+    output: where the result goes, None: in its place. The rest is as in build_database().
+    """
 
 def drop_from_database(database: Path, clips: Sequence[str], output: Path | None = None) -> int:
-    """Drops clips by glob patterns on name or source, and tells how many. Raises FormatError."""
+    """Drops the clips whose name or source matches a glob pattern, and returns how many.
+
+    output: where the result goes, None: in its place. Raises FormatError.
+    """

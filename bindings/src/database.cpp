@@ -61,33 +61,38 @@ void bind_clips(py::module_& m) {
                              R"doc(One kind of skeleton among a database's sources.
 
 joints are the source's that move the standard ones; unit_scale times its lengths are metres.)doc")
-      .def_readonly("id", &SourceSkeleton::id)
-      .def_readonly("num_joints", &SourceSkeleton::num_joints)
-      .def_readonly("joints", &SourceSkeleton::joints)
-      .def_readonly("unit_scale", &SourceSkeleton::unit_scale);
+      .def_readonly("id", &SourceSkeleton::id, "What Clip.skeleton names it by.")
+      .def_readonly("num_joints", &SourceSkeleton::num_joints, "Joints of the source.")
+      .def_readonly("joints", &SourceSkeleton::joints,
+                    "The source's joint for each standard joint.")
+      .def_readonly("unit_scale", &SourceSkeleton::unit_scale,
+                    "Metres in one unit of the source's lengths.");
 
   py::class_<Clip>(m, "Clip", R"doc(A stretch of a database's rows.
 
 source is the file, relative to the folder built from; hashes are XXH3 of it and of the .asf
 that was read with it; skeleton is the id of its SourceSkeleton; origin and license are notes;
 warnings are kinds of warnings about the file and how often (empty for copies).)doc")
-      .def_readonly("name", &Clip::name)
-      .def_readonly("actor", &Clip::actor)
-      .def_readonly("motion_class", &Clip::motion_class)
-      .def_readonly("source", &Clip::source)
-      .def_readonly("source_hash", &Clip::source_hash)
-      .def_readonly("skeleton_hash", &Clip::skeleton_hash)
-      .def_readonly("skeleton", &Clip::skeleton)
-      .def_readonly("origin", &Clip::origin)
-      .def_readonly("license", &Clip::license)
-      .def_readonly("source_frames", &Clip::source_frames)
-      .def_readonly("source_rate_hz", &Clip::source_rate_hz)
-      .def_readonly("warnings", &Clip::warnings)
-      .def_readonly("is_mirrored", &Clip::is_mirrored)
-      .def_readonly("is_reversed", &Clip::is_reversed)
+      .def_readonly("name", &Clip::name, "Unique in the database.")
+      .def_readonly("actor", &Clip::actor, "Who performed it; empty: not known.")
+      .def_readonly("motion_class", &Clip::motion_class,
+                    "What kind of movement it is; empty: not known.")
+      .def_readonly("source", &Clip::source, "The file, relative to the folder built from.")
+      .def_readonly("source_hash", &Clip::source_hash, "XXH3 of the file.")
+      .def_readonly("skeleton_hash", &Clip::skeleton_hash,
+                    "XXH3 of the .asf that was read with it; empty for other formats.")
+      .def_readonly("skeleton", &Clip::skeleton, "The id of its SourceSkeleton.")
+      .def_readonly("origin", &Clip::origin, "A note: where the file is from.")
+      .def_readonly("license", &Clip::license, "A note: what may be done with it.")
+      .def_readonly("source_frames", &Clip::source_frames, "Frames of the file.")
+      .def_readonly("source_rate_hz", &Clip::source_rate_hz, "Frame rate of the file.")
+      .def_readonly("warnings", &Clip::warnings,
+                    "Kinds of warnings about the file and how often; empty for copies.")
+      .def_readonly("is_mirrored", &Clip::is_mirrored, "Whether left and right are exchanged.")
+      .def_readonly("is_reversed", &Clip::is_reversed, "Whether it runs backwards.")
       .def_readonly("tempo", &Clip::tempo, "How much faster than performed.")
-      .def_readonly("begin", &Clip::begin)
-      .def_readonly("end", &Clip::end);
+      .def_readonly("begin", &Clip::begin, "Its first row.")
+      .def_readonly("end", &Clip::end, "One past its last row.");
 }
 
 using DatabaseClass = py::class_<MotionDatabase, std::shared_ptr<MotionDatabase>>;
@@ -114,10 +119,9 @@ angular_velocity, up.)doc")
           },
           py::arg("method"),
           "What a method learned and keeps here, see store_model. Raises FormatError.")
-      .def_property_readonly("other_tensors", &other_tensors,
-                             R"doc(Tensors that other programs put into the file.
-
-Name, element type, shape and bytes of each.)doc");
+      .def_property_readonly(
+          "other_tensors", &other_tensors,
+          R"doc(Tensors that other programs put into the file: name, element type, shape, bytes.)doc");
 }
 
 }  // namespace
@@ -131,9 +135,10 @@ void bind_database(py::module_& m) {
              return std::const_pointer_cast<MotionDatabase>(MotionDatabase::open(path));
            }),
            py::arg("path"), "Checks the whole file. Raises FormatError.")
-      .def_property_readonly("path", [](const MotionDatabase& d) { return d.path().string(); })
-      .def_property_readonly("num_frames", &MotionDatabase::num_frames)
-      .def_property_readonly("rate_hz", &MotionDatabase::rate_hz)
+      .def_property_readonly(
+          "path", [](const MotionDatabase& d) { return d.path().string(); }, "The file.")
+      .def_property_readonly("num_frames", &MotionDatabase::num_frames, "Rows, over all clips.")
+      .def_property_readonly("rate_hz", &MotionDatabase::rate_hz, "Rows a second.")
       .def_property_readonly(
           "skeleton", [](const MotionDatabase& d) { return d.skeleton(); },
           "The standard skeleton that all its motions are on.")

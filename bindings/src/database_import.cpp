@@ -97,30 +97,43 @@ py::list texts_of(const std::vector<std::string>& lines) {
 }
 
 void bind_reports(py::module_& m) {
-  py::class_<ProgressReport>(m, "ProgressReport")
-      .def_readonly("done", &ProgressReport::done)
-      .def_readonly("total", &ProgressReport::total)
-      .def_property_readonly("what",
-                             [](const ProgressReport& r) { return text_of(std::string(r.what)); })
-      .def_readonly("files", &ProgressReport::files)
-      .def_readonly("num_files", &ProgressReport::num_files)
-      .def_readonly("frames", &ProgressReport::frames)
-      .def_readonly("bytes", &ProgressReport::bytes)
-      .def_readonly("num_bytes", &ProgressReport::num_bytes);
+  py::class_<ProgressReport>(m, "ProgressReport", R"doc(How far an import is: done of total steps.
 
-  py::class_<BuildReport>(m, "BuildReport")
-      .def_readonly("num_files", &BuildReport::num_files)
-      .def_readonly("num_known", &BuildReport::num_known)
-      .def_readonly("num_replaced", &BuildReport::num_replaced)
-      .def_readonly("num_clips", &BuildReport::num_clips)
-      .def_readonly("num_frames", &BuildReport::num_frames)
-      .def_readonly("source_frames", &BuildReport::source_frames)
-      .def_readonly("source_bytes", &BuildReport::source_bytes)
-      .def_readonly("elapsed_s", &BuildReport::elapsed_s)
-      .def_property_readonly("skipped", [](const BuildReport& r) { return pairs_of(r.skipped); })
-      .def_property_readonly("duplicates",
-                             [](const BuildReport& r) { return pairs_of(r.duplicates); })
-      .def_property_readonly("warnings", [](const BuildReport& r) { return texts_of(r.warnings); });
+files of num_files are through in this pass over them (there are two) and hold so many frames;
+bytes of num_bytes are read, over all passes.)doc")
+      .def_readonly("done", &ProgressReport::done, "Steps done.")
+      .def_readonly("total", &ProgressReport::total, "Steps in all.")
+      .def_property_readonly(
+          "what", [](const ProgressReport& r) { return text_of(std::string(r.what)); },
+          "What is being done.")
+      .def_readonly("files", &ProgressReport::files, "Files done in this pass.")
+      .def_readonly("num_files", &ProgressReport::num_files, "Files in all.")
+      .def_readonly("frames", &ProgressReport::frames, "Frames in the files done.")
+      .def_readonly("bytes", &ProgressReport::bytes, "Bytes read, over all passes.")
+      .def_readonly("num_bytes", &ProgressReport::num_bytes, "Bytes to be read, over all passes.");
+
+  py::class_<BuildReport>(m, "BuildReport", R"doc(What an import did.
+
+num_files, source_frames and source_bytes are what it took in, num_clips and num_frames what
+the database holds; num_known files were in already, num_replaced of num_files took the place
+of what they held before. skipped (unusable) and duplicates are (path, reason).)doc")
+      .def_readonly("num_files", &BuildReport::num_files, "Files read.")
+      .def_readonly("num_known", &BuildReport::num_known, "Files that were in it already.")
+      .def_readonly("num_replaced", &BuildReport::num_replaced,
+                    "Files that took the place of what they held before.")
+      .def_readonly("num_clips", &BuildReport::num_clips, "Clips of the database.")
+      .def_readonly("num_frames", &BuildReport::num_frames, "Rows of the database.")
+      .def_readonly("source_frames", &BuildReport::source_frames, "Frames of the files read.")
+      .def_readonly("source_bytes", &BuildReport::source_bytes, "Bytes of the files read.")
+      .def_readonly("elapsed_s", &BuildReport::elapsed_s, "How long it took.")
+      .def_property_readonly(
+          "skipped", [](const BuildReport& r) { return pairs_of(r.skipped); },
+          "Files that could not be used, and why.")
+      .def_property_readonly(
+          "duplicates", [](const BuildReport& r) { return pairs_of(r.duplicates); },
+          "Files whose motion was there already, and where.")
+      .def_property_readonly(
+          "warnings", [](const BuildReport& r) { return texts_of(r.warnings); }, "One line each.");
 }
 
 }  // namespace
@@ -128,24 +141,43 @@ void bind_reports(py::module_& m) {
 void bind_database_import(py::module_& m) {
   bind_reports(m);
   const std::vector<std::string> no_patterns;
-  m.def("find_motion_files", &motion_files, py::arg("sources"), py::arg("exclude") = no_patterns);
+  m.def("find_motion_files", &motion_files, py::arg("sources"), py::arg("exclude") = no_patterns,
+        R"doc(The motion files that the sources are or hold, without those excluded, sorted.
+
+Raises FormatError when a source does not exist or nothing is left.)doc");
   m.def("named_motion_files", &named_motion_files, py::arg("sources"),
-        py::arg("exclude") = no_patterns);
+        py::arg("exclude") = no_patterns,
+        R"doc(As find_motion_files, each with the name that its clips have as their source.)doc");
   m.def("build_database", &build, py::arg("sources"), py::arg("output"), py::kw_only(),
         py::arg("rate_hz") = 25.0, py::arg("mirror") = false, py::arg("reverse") = false,
         py::arg("tempo_copies") = BuildOptions().tempo_copies, py::arg("exclude") = no_patterns,
         py::arg("strict") = false, py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
         py::arg("labels") = Labels(), py::arg("label_warnings") = no_patterns,
         py::arg("by_hand") = JointNames(), py::arg("mappings") = py::none(),
-        py::arg("progress") = py::none(), py::arg("details") = py::none());
+        py::arg("progress") = py::none(), py::arg("details") = py::none(),
+        R"doc(Builds a database from motion files, or folders of them, and writes it to output.
+
+rate_hz is the database's frame rate; mirror, reverse and tempo_copies (factors) add copies of
+each clip; exclude: glob patterns of files to leave out; labels: actor, class, origin and
+license by a motion file's path. strict: the first file that cannot be used ends it, otherwise
+it is skipped; keep_duplicates: files with the same motion are all taken; num_threads 0: one
+for each processor; by_hand: the source's joint by standard joint; mappings: the file of
+remembered mappings. Raises FormatError, and Cancelled if progress returns False; the output
+is then left as it was.)doc");
   m.def("add_to_database", &add, py::arg("database"), py::arg("sources"),
         py::arg("output") = py::none(), py::kw_only(), py::arg("exclude") = no_patterns,
         py::arg("strict") = false, py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
         py::arg("labels") = Labels(), py::arg("label_warnings") = no_patterns,
         py::arg("by_hand") = JointNames(), py::arg("mappings") = py::none(),
-        py::arg("progress") = py::none(), py::arg("details") = py::none());
+        py::arg("progress") = py::none(), py::arg("details") = py::none(),
+        R"doc(Adds motion files to a database, with the copies that it was built with.
+
+output: where the result goes, None: in its place. The rest is as in build_database().)doc");
   m.def("drop_from_database", &drop, py::arg("database"), py::arg("clips"),
-        py::arg("output") = py::none());
+        py::arg("output") = py::none(),
+        R"doc(Drops the clips whose name or source matches a glob pattern, and returns how many.
+
+output: where the result goes, None: in its place. Raises FormatError.)doc");
 }
 
 }  // namespace sparse_mocap::python

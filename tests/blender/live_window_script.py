@@ -17,7 +17,7 @@ import bpy
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
+sys.path[:0] = [str(ROOT), str(Path(__file__).parent), str(ROOT / "tests")]
 sys.path.append(str(ROOT / "bindings"))
 PORT, DATABASE, FOLDER, SERIAL = sys.argv[sys.argv.index("--") + 1 :]
 sys.path.append(SERIAL)

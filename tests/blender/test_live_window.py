@@ -27,6 +27,7 @@ def test_the_armature_is_live_while_the_timeline_plays(tmp_path):
     pictures = os.environ.get("SPARSE_MOCAP_PICTURES")
     own = {"BLENDER_USER_CONFIG": str(tmp_path / "settings"), "LIBGL_ALWAYS_SOFTWARE": "1"}
     options = ["--factory-startup", "-noaudio", "--enable-event-simulate"]
+    options += ["--python-exit-code", "1"]
     options += ["--window-geometry", "0", "0", "1280", "800"]
     with (
         own_runtime(tmp_path / "runtime"),
