@@ -134,7 +134,7 @@ def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
         text.error(layout, context, state.warning)
     if session.is_live_wanted and quality.num_poses:
         rows = [
-            ("Sensors match", quality.match),
+            ("Match", quality.match),
             ("Delay", f"{1e3 * quality.latency_s:.0f} ms"),
         ]
         dropped = quality.num_skipped + state.num_dropped

@@ -93,7 +93,7 @@ def _performed(layout: UILayout, context: Context) -> None:
             ("Action", action.name),
             ("Duration", text.duration(facts.duration_s)),
             ("Frames", f"{first:.0f} to {last:.0f}"),
-            ("Sensors match", facts.match),
+            ("Match", facts.match),
         ]
         text.facts(layout, rows)
         if facts.is_guess:

@@ -23,8 +23,8 @@ Motion clip_motion(const MotionDatabase& database, int clip_index) {
     using namespace root_motion_column;
     const Eigen::RowVectorXd rates = database.root_motion().row(frame).cast<double>();
     if (frame > clip.begin) {
-      position += yaw_rotation(yaw_rad) *
-                  Vec3(rates[velocity_left], 0.0, rates[velocity_forward]) * motion.frame_time_s;
+      position += yaw_rotation(yaw_rad) * Vec3(rates[velocity_left], 0.0, rates[velocity_forward]) *
+                  motion.frame_time_s;
       yaw_rad += rates[yaw_rate] * motion.frame_time_s;
     }
     position.y() = rates[height];

@@ -28,9 +28,8 @@ class WindowSearch {
         weights_(3 * signals_.size(), 1.0F),
         take_(static_cast<Eigen::Index>(take.size()),
               static_cast<Eigen::Index>(3 * signals_.size())),
-        index_(
-            database_features(database, database_signals(database, signals_), layout_, weights_),
-            searched_frames(database, false, excluded_clips)) {
+        index_(database_features(database, database_signals(database, signals_), layout_, weights_),
+               searched_frames(database, false, excluded_clips)) {
     for (std::size_t t = 0; t < take.size(); ++t)
       take_.row(static_cast<Eigen::Index>(t)) = signal_row(take[t], signals_);
   }
@@ -67,8 +66,7 @@ std::vector<int> playback_best_path(const MotionDatabase& database,
   return frames;
 }
 
-std::vector<int> nearest_windows(const MotionDatabase& database,
-                                 const std::vector<Sensor>& sensors,
+std::vector<int> nearest_windows(const MotionDatabase& database, const std::vector<Sensor>& sensors,
                                  const std::vector<Reading>& take, int window,
                                  const std::vector<int>& excluded_clips) {
   FeatureLayout layout;

@@ -21,8 +21,7 @@ std::vector<int> playback_best_path(const MotionDatabase& database,
 
 // The frame whose last `window` readings are nearest to the take's (the idea of Slyper and Hodgins
 // 2008).
-std::vector<int> nearest_windows(const MotionDatabase& database,
-                                 const std::vector<Sensor>& sensors,
+std::vector<int> nearest_windows(const MotionDatabase& database, const std::vector<Sensor>& sensors,
                                  const std::vector<Reading>& take, int window,
                                  const std::vector<int>& excluded_clips);
 

@@ -71,9 +71,9 @@ Reconstruction reconstruct(std::span<const SensorRecording> take, std::vector<Se
 
 LiveReconstructor::LiveReconstructor(std::vector<SensorInput> sensors,
                                      const ReconstructionRequest& request, int largest_backlog)
-    : method_(make_live_method(
-          method_of(request), request.settings,
-          context_of(request, used_channels(sensors, method_of(request).info)))),
+    : method_(
+          make_live_method(method_of(request), request.settings,
+                           context_of(request, used_channels(sensors, method_of(request).info)))),
       readings_(used_channels(std::move(sensors), method_of(request).info),
                 settings_for(*method_, request, GravityAverage::causal)),
       largest_backlog_(static_cast<std::size_t>(largest_backlog)) {}

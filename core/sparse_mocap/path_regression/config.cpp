@@ -82,8 +82,7 @@ const OptionTable<Config>& options() {
                   "how much better paths count more than others")
           .number("regression_ridge", &Config::regression_ridge, 0.0, 1e9,
                   "caution of the regression from readings to poses; 0 turns it off")
-          .number("pose_weight", &Config::pose_weight, 1e-6, 1e6,
-                  "weight of the retrieved poses")
+          .number("pose_weight", &Config::pose_weight, 1e-6, 1e6, "weight of the retrieved poses")
           .number("motion_weight", &Config::motion_weight, 0.0, 1e6,
                   "weight of the retrieved movement since the frame before")
           .number("gravity_weight", &Config::gravity_weight, 0.0, 1e6,

@@ -67,8 +67,8 @@ SolvedFrame FrameSolver::solve(const std::vector<Path>& paths, const SignalWindo
                                const Reading& reading) {
   auto best = best_paths(paths, config_.num_paths);
   auto weights = softmax_weights(best, config_.sharpness);
-  Neighbourhood neighbours = gather(*database_, std::move(best), std::move(weights),
-                                    past_ ? &past_->angles : nullptr);
+  Neighbourhood neighbours =
+      gather(*database_, std::move(best), std::move(weights), past_ ? &past_->angles : nullptr);
   if (config_.regression_ridge > 0.0) regress(neighbours, window);
   SolvedFrame frame;
   frame.time_s = reading.time_s;
@@ -121,9 +121,9 @@ Eigen::VectorXd FrameSolver::fitted_angles(const Neighbourhood& neighbours,
     const Eigen::MatrixXd moved = steps_into(neighbours.paths).colwise() + past_->positions;
     positions.push_back(position_target(config_.motion_weight, moved, weights));
   }
-  const PoseFit fit(database_->skeleton(), std::move(positions),
-                    inclination_target(config_.gravity_weight, database_->skeleton(), reading,
-                                       signals_));
+  const PoseFit fit(
+      database_->skeleton(), std::move(positions),
+      inclination_target(config_.gravity_weight, database_->skeleton(), reading, signals_));
   const PoseSubspace subspace = weighted_pca(neighbours.angles, weights, config_.pca_variance);
   std::vector<Eigen::VectorXd> starts{subspace.mean, neighbours.angles.col(0)};
   if (past_) starts.insert(starts.begin(), past_->angles);

@@ -38,16 +38,14 @@ InclinationTarget inclination_target(double weight, const Skeleton& skeleton,
     rises_m.push_back(up.normalized().x() * skeleton.joint(site.carrier).bone.norm());
     target.joints.push_back(site.carrier);
   }
-  target.rises_m = Eigen::Map<const Eigen::VectorXd>(rises_m.data(),
-                                                     static_cast<Eigen::Index>(rises_m.size()));
+  target.rises_m =
+      Eigen::Map<const Eigen::VectorXd>(rises_m.data(), static_cast<Eigen::Index>(rises_m.size()));
   return target;
 }
 
 PoseFit::PoseFit(const Skeleton& skeleton, std::vector<PositionTarget> positions,
                  InclinationTarget inclination)
-    : skeleton_(skeleton),
-      positions_(std::move(positions)),
-      inclination_(std::move(inclination)) {}
+    : skeleton_(skeleton), positions_(std::move(positions)), inclination_(std::move(inclination)) {}
 
 Eigen::VectorXd PoseFit::rise_residuals(const JointTransforms& transforms) const {
   Eigen::VectorXd residuals = -inclination_.rises_m;
@@ -94,8 +92,8 @@ PoseFit::Model PoseFit::majorised(const Eigen::VectorXd& angles,
   for (Eigen::Index k = 0; k < residuals.size(); ++k) {
     const int joint = inclination_.joints[static_cast<std::size_t>(k)];
     const int parent = skeleton_.joint(joint).parent;
-    rises.row(k) = kUp.transpose() *
-                   (jacobian.middleRows(3 * joint, 3) - jacobian.middleRows(3 * parent, 3));
+    rises.row(k) =
+        kUp.transpose() * (jacobian.middleRows(3 * joint, 3) - jacobian.middleRows(3 * parent, 3));
   }
   model.value += inclination_.weight * residuals.squaredNorm();
   model.gradient.noalias() += 2.0 * inclination_.weight * rises.transpose() * residuals;

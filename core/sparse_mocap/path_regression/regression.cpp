@@ -29,7 +29,8 @@ Eigen::VectorXd regression_weights(const Eigen::MatrixXf& features, const Eigen:
   return weights.array() * (1.0 + lean.cast<double>().array());
 }
 
-void shift_to_regression(retrieval::Neighbourhood& neighbours, const Eigen::VectorXd& regression_weights) {
+void shift_to_regression(retrieval::Neighbourhood& neighbours,
+                         const Eigen::VectorXd& regression_weights) {
   const Eigen::VectorXd difference = regression_weights - neighbours.weights;
   const Eigen::VectorXd angle_shift = neighbours.angles * difference;
   const Eigen::VectorXd position_shift = neighbours.positions * difference;

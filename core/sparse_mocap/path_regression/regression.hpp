@@ -17,6 +17,7 @@ Eigen::VectorXd regression_weights(const Eigen::MatrixXf& features, const Eigen:
 
 // Moves all neighbours' poses alike, so that their weighted mean becomes the one that the
 // regression predicts; how they differ from each other stays.
-void shift_to_regression(retrieval::Neighbourhood& neighbours, const Eigen::VectorXd& regression_weights);
+void shift_to_regression(retrieval::Neighbourhood& neighbours,
+                         const Eigen::VectorXd& regression_weights);
 
 }  // namespace sparse_mocap::path_regression

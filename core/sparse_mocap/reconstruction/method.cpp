@@ -11,8 +11,8 @@ namespace sparse_mocap {
 
 void require_sensors(const Reading& reading, Eigen::Index num_sensors) {
   if (reading.num_sensors() != num_sensors)
-    throw ConfigError("a reading of " + std::to_string(num_sensors) +
-                      " sensors is expected, got " + std::to_string(reading.num_sensors()));
+    throw ConfigError("a reading of " + std::to_string(num_sensors) + " sensors is expected, got " +
+                      std::to_string(reading.num_sensors()));
 }
 
 std::vector<PoseEstimate> solve_live(LiveMethod& method, const std::vector<Reading>& take,

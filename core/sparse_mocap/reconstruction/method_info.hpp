@@ -45,12 +45,12 @@ struct Experiment {
 struct MethodInfo {
   std::string name;
   std::string title;
-  std::string summary;               // one sentence
-  std::string paper;                 // empty: the project's own method
-  std::vector<PresetInfo> presets;   // the default first
-  std::vector<OptionInfo> options;   // with the default preset's values
-  Channels required_channels;        // of every sensor
-  Channels optional_channels;        // used where a sensor has them
+  std::string summary;              // one sentence
+  std::string paper;                // empty: the project's own method
+  std::vector<PresetInfo> presets;  // the default first
+  std::vector<OptionInfo> options;  // with the default preset's values
+  Channels required_channels;       // of every sensor
+  Channels optional_channels;       // used where a sensor has them
   int fewest_sensors = 1;
   int most_sensors = 1;
   bool needs_database = false;

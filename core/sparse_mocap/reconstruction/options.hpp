@@ -45,8 +45,13 @@ class OptionTable {
   }
   OptionTable& integer(const char* name, int Config::*member, int lowest, int highest,
                        const char* help) {
-    return add({name, OptionInfo::Kind::integer, help, static_cast<double>(lowest),
-                static_cast<double>(highest), {}, {}},
+    return add({name,
+                OptionInfo::Kind::integer,
+                help,
+                static_cast<double>(lowest),
+                static_cast<double>(highest),
+                {},
+                {}},
                member);
   }
   OptionTable& flag(const char* name, bool Config::*member, const char* help) {

@@ -21,9 +21,9 @@ using Diagnostics = std::map<std::string, Eigen::VectorXd, std::less<>>;
 
 // One reconstructed frame of a method's skeleton.
 struct PoseEstimate {
-  double time_s = 0.0;  // of the reading that it belongs to
-  std::vector<Quat> rotations;  // R_parent_joint of every joint; the root's is R_world_root
-  Vec3 root_position = Vec3::Zero();                   // m, world
+  double time_s = 0.0;                // of the reading that it belongs to
+  std::vector<Quat> rotations;        // R_parent_joint of every joint; the root's is R_world_root
+  Vec3 root_position = Vec3::Zero();  // m, world
   Eigen::Vector2d contacts = Eigen::Vector2d::Zero();  // probability that left, right foot stand
   Diagnostics diagnostics;
 };

@@ -24,8 +24,8 @@ Eigen::Index site_column(const MotionDatabase& database, int site) {
   const auto& names = database.site_names();
   const auto at = std::find(names.begin(), names.end(), site_of(site).name);
   if (at == names.end())
-    throw ConfigError("the motion database has no readings for " +
-                      std::string(site_of(site).name) + "; build it again");
+    throw ConfigError("the motion database has no readings for " + std::string(site_of(site).name) +
+                      "; build it again");
   return static_cast<Eigen::Index>(3 * (at - names.begin()));
 }
 

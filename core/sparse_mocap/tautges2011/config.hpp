@@ -18,10 +18,10 @@ enum class PriorModel {
 
 // What the paper leaves open or states as a number.
 struct Config {
-  int num_neighbours = 4096;  // K, section 6.3
-  int num_paths = 256;        // I, section 6.3
-  int window_readings = 20;   // M; the paper states no number
-  double penalty = 1.0;  // of an unmatched reading, in distances of its farthest neighbour
+  int num_neighbours = 4096;    // K, section 6.3
+  int num_paths = 256;          // I, section 6.3
+  int window_readings = 20;     // M; the paper states no number
+  double penalty = 1.0;         // of an unmatched reading, in distances of its farthest neighbour
   bool is_time_warping = true;  // figure 13
   PriorModel prior = PriorModel::kernel;
 

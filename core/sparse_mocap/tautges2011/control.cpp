@@ -37,8 +37,8 @@ KernelTerm control_term(const PathDerivatives& derivatives, const Config& config
                       derivatives.velocities_before.cols());
   for (std::size_t k = 0; k < delivering.size(); ++k) {
     const Eigen::Index row = 3 * term.space.joints[k];
-    const Vec3 moved = positions_now.segment<3>(row) +
-                       0.5 * accelerations_now.col(delivering[k]) * dt_s * dt_s;
+    const Vec3 moved =
+        positions_now.segment<3>(row) + 0.5 * accelerations_now.col(delivering[k]) * dt_s * dt_s;
     term.targets.middleRows(3 * static_cast<Eigen::Index>(k), 3) =
         (derivatives.velocities_before.middleRows(row, 3) * dt_s).colwise() + moved;
   }

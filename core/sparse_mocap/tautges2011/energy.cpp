@@ -84,9 +84,9 @@ double Energy::value(const Eigen::VectorXd& angles) const {
     total += kernel_sum(term, weights_,
                         softened_squares(term, observed(term.space, angles, transforms)));
   for (const auto& term : terms_.normals)
-    total += term.weight *
-             (term.whitening * (observed(term.space, angles, transforms) - term.mean))
-                 .squaredNorm();
+    total +=
+        term.weight *
+        (term.whitening * (observed(term.space, angles, transforms) - term.mean)).squaredNorm();
   return total;
 }
 

@@ -69,11 +69,11 @@ class NormalModel : public EnergyModel {
     const double bend_m =
         derivatives.accelerations.norm() * dt_s * dt_s /
         std::sqrt(static_cast<double>(derivatives.accelerations.cols()));  // of a whole pose
-    out.normals.push_back({{},
-                           config_.w_prior * config_.w_smooth,
-                           2.0 * x - x_before,
-                           Eigen::MatrixXd::Identity(x.size(), x.size()) /
-                               std::max(bend_m, Energy::kSoftening)});
+    out.normals.push_back(
+        {{},
+         config_.w_prior * config_.w_smooth,
+         2.0 * x - x_before,
+         Eigen::MatrixXd::Identity(x.size(), x.size()) / std::max(bend_m, Energy::kSoftening)});
     return out;
   }
 

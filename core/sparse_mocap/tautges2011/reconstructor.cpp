@@ -37,8 +37,8 @@ std::optional<PoseEstimate> Reconstructor::step(const Reading& reading) {
   // Section 5: the I paths of least cost C, weights W (equation (1)), poses Q and X, V and A.
   auto paths = best_paths(graph_.paths(), config_.num_paths);
   auto weights = linear_weights(paths);
-  const Neighbourhood neighbours = gather(*database_, std::move(paths), std::move(weights),
-                                          past_ ? &past_->angles : nullptr);
+  const Neighbourhood neighbours =
+      gather(*database_, std::move(paths), std::move(weights), past_ ? &past_->angles : nullptr);
   const PathDerivatives derivatives = path_derivatives(*database_, neighbours.paths);
   // Sections 5.1 and 5.2: the energy, equations (2) to (11).
   const Energy energy(

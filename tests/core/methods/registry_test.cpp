@@ -126,8 +126,9 @@ TEST(Registry, SaysWhichWayAMethodDoesNotWork) {
             "method tautges2011 has no best quality: it works live only, frame by frame");
   MethodEntry whole_takes_only = methods().front();
   whole_takes_only.make_live = nullptr;
-  EXPECT_NE(complaint([&] { make_live_method(whole_takes_only, {}, small_context()); })
-                .find("does not work live"),
+  EXPECT_NE(complaint([&] {
+              make_live_method(whole_takes_only, {}, small_context());
+            }).find("does not work live"),
             std::string::npos);
 }
 

@@ -116,8 +116,7 @@ class EachWay : public ::testing::TestWithParam<Way> {
 TEST_P(EachWay, GivesOneEstimateAReadingAtItsTime) {
   const auto estimates = made()(take_, Progress());
   ASSERT_EQ(estimates.size(), take_.size());
-  for (std::size_t t = 0; t < take_.size(); ++t)
-    EXPECT_EQ(estimates[t].time_s, take_[t].time_s);
+  for (std::size_t t = 0; t < take_.size(); ++t) EXPECT_EQ(estimates[t].time_s, take_[t].time_s);
 }
 
 TEST_P(EachWay, AnswersTakesShorterThanItsWindows) {

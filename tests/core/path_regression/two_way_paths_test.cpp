@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "support/synthetic.hpp"
 #include "retrieval/path_search.hpp"
+#include "support/synthetic.hpp"
 
 namespace sparse_mocap::path_regression {
 namespace {

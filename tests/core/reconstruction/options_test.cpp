@@ -79,7 +79,8 @@ TEST(OptionTable, WhatItDescribesCanBeSet) {
 
 TEST(OptionTable, SaysWhatIsPossible) {
   EXPECT_EQ(complaint_about("weight", "3"), "weight must be a number from 0 to 2.5, got '3'");
-  EXPECT_EQ(complaint_about("count", "2.5"), "count must be a whole number from 1 to 100, got '2.5'");
+  EXPECT_EQ(complaint_about("count", "2.5"),
+            "count must be a whole number from 1 to 100, got '2.5'");
   EXPECT_EQ(complaint_about("is_used", "yes"), "is_used must be true or false, got 'yes'");
   EXPECT_EQ(complaint_about("colour", "blue"), "colour must be one of red, green, got 'blue'");
   for (const char* text : {"", "nan", "inf", "1,5", "1.5x", " 1", "0x1"})
@@ -91,14 +92,18 @@ TEST(OptionTable, SaysWhatIsPossible) {
 
 TEST(OptionTable, ChecksSettingsThatWereMadeInCode) {
   EXPECT_NO_THROW(table().validate({}));
-  EXPECT_NE(complaint([] { table().validate({-1.0, 3, true, Colour::red}); }).find("weight"),
+  EXPECT_NE(complaint([] {
+              table().validate({-1.0, 3, true, Colour::red});
+            }).find("weight"),
             std::string::npos);
   EXPECT_NE(complaint([] { table().validate({std::nan(""), 3, true, Colour::red}); }), "");
 }
 
 TEST(OptionTable, MayBeEmpty) {
   Settings settings;
-  EXPECT_EQ(complaint([&] { OptionTable<Settings>().apply({{"weight", "1"}}, settings); }),
+  EXPECT_EQ(complaint([&] {
+              OptionTable<Settings>().apply({{"weight", "1"}}, settings);
+            }),
             "unknown option 'weight'; this method has none");
 }
 

@@ -118,7 +118,8 @@ TEST(FeatureAt, KeepsSilenceInThePartsThatMeetIt) {
 TEST(DatabaseFeatures, DoNotReachOverClipBorders) {
   const auto database = database_of({swaying_motion(template_skeleton(), 1, 16, 50.0),
                                      swaying_motion(template_skeleton(), 2, 16, 50.0)});
-  const FeatureRows readings = database_signals(*database, compared_signals(paper_sensors(), false));
+  const FeatureRows readings =
+      database_signals(*database, compared_signals(paper_sensors(), false));
   const FeatureLayout layout = layout_of({{{-3, 1.0}}, {{2, 1.0}}});
   const std::vector<float> weights(12, 1.0F);
   const FeatureRows features = database_features(*database, readings, layout, weights);

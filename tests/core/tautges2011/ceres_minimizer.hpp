@@ -37,8 +37,7 @@ class EnergyInSubspace : public ceres::FirstOrderFunction {
 
 // The least energy that L-BFGS reaches from the start.
 inline double ceres_minimum(const tautges2011::Energy& energy,
-                            const retrieval::PoseSubspace& subspace,
-                            const Eigen::VectorXd& start) {
+                            const retrieval::PoseSubspace& subspace, const Eigen::VectorXd& start) {
   const ceres::GradientProblem problem(new EnergyInSubspace(energy, subspace));
   ceres::GradientProblemSolver::Options options;
   options.line_search_direction_type = ceres::LBFGS;

@@ -28,8 +28,8 @@ TEST(NormalTerm, IsTheMahalanobisDistance) {
   for (Eigen::Index i = 0; i < 40; ++i) mean += weights[i] * kernel.targets.col(i);
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(5, 5);
   for (Eigen::Index i = 0; i < 40; ++i)
-    covariance += weights[i] * (kernel.targets.col(i) - mean) *
-                  (kernel.targets.col(i) - mean).transpose();
+    covariance +=
+        weights[i] * (kernel.targets.col(i) - mean) * (kernel.targets.col(i) - mean).transpose();
   EXPECT_EQ(term.weight, 3.0);
   EXPECT_LT((term.mean - mean).norm(), 1e-12);
   for (int trial = 0; trial < 10; ++trial) {
@@ -82,8 +82,9 @@ TEST_F(Models, AreMadeOfKernelsOrOfNormalDistributions) {
   ASSERT_EQ(mahalanobis.normals.size(), 4U);
   for (std::size_t k = 0; k < 4; ++k) {
     EXPECT_EQ(mahalanobis.normals[k].weight, kernel.kernels[k].weight);
-    EXPECT_LT((mahalanobis.normals[k].mean - kernel.kernels[k].targets * neighbours_.weights).norm(),
-              1e-9);
+    EXPECT_LT(
+        (mahalanobis.normals[k].mean - kernel.kernels[k].targets * neighbours_.weights).norm(),
+        1e-9);
   }
   const EnergyTerms normal = terms(PriorModel::normal, past_);
   EXPECT_TRUE(normal.kernels.empty());

@@ -91,8 +91,7 @@ TEST(Energy, GradientEqualsCentralDifferences) {
 TEST(Energy, IsSmoothWhereAPoseMeetsATarget) {
   Random random(3);
   const Eigen::MatrixXd target = random.matrix(43, 1, 1.0);
-  const Energy energy(kSkeleton, Eigen::VectorXd::Ones(1),
-                      {{{kAngles, 1.0, target}}, {}});
+  const Energy energy(kSkeleton, Eigen::VectorXd::Ones(1), {{{kAngles, 1.0, target}}, {}});
   Eigen::VectorXd gradient;
   EXPECT_NEAR(energy.value_and_gradient(target, gradient), std::sqrt(Energy::kSoftening), 1e-12);
   EXPECT_LT(gradient.norm(), 1e-12);
@@ -156,8 +155,8 @@ TEST(Majoriser, LiesAboveTheEnergyOfLinearisedPositions) {
     y += jacobian * d;
     double linearised = 0.0;
     for (Eigen::Index i = 0; i < 9; ++i)
-      linearised += 2.0 * weights[i] *
-                    std::pow((term.targets.col(i) - y).squaredNorm() + 1e-6, 0.25);
+      linearised +=
+          2.0 * weights[i] * std::pow((term.targets.col(i) - y).squaredNorm() + 1e-6, 0.25);
     const double above = model.value + model.gradient.dot(d) + 0.5 * d.dot(model.hessian * d);
     EXPECT_GE(above, linearised - 1e-5);
   }

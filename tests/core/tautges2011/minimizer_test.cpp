@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sparse_mocap/retrieval/pose_minimizer.hpp"
-
 #include <gtest/gtest.h>
 
 #include <iostream>
 
 #include "formats/format_test_support.hpp"
+#include "sparse_mocap/retrieval/pose_minimizer.hpp"
 #include "support/refusals.hpp"
 #include "tautges2011/ceres_minimizer.hpp"
 #include "tautges2011/hdm05.hpp"

@@ -15,10 +15,10 @@ namespace sparse_mocap::tautges2011 {
 namespace {
 
 using namespace standard_joint;
+using testing::paper_signals;
 using testing::Random;
 using testing::random_derivatives;
 using testing::random_neighbourhood;
-using testing::paper_signals;
 using testing::template_skeleton;
 
 constexpr double kDt = 0.04;
@@ -81,10 +81,9 @@ TEST_F(Terms, MotionPriorIsEquationsSixAndSeven) {
 TEST_F(Terms, SmoothnessPriorIsEquationsEightAndNine) {
   const Eigen::VectorXd a = (x_ - 2.0 * x_now_ + x_before_) / (kDt * kDt);
   expect_near(value(smoothness_prior(derivatives_, config_, x_now_, x_before_, kDt)),
-              5.5 * 0.25 * kDt *
-                  kernel_sum([&](Eigen::Index i) -> Eigen::VectorXd {
-                    return derivatives_.accelerations.col(i) - a;
-                  }));
+              5.5 * 0.25 * kDt * kernel_sum([&](Eigen::Index i) -> Eigen::VectorXd {
+                return derivatives_.accelerations.col(i) - a;
+              }));
 }
 
 TEST_F(Terms, ControlTermIsEquationsTenAndEleven) {
