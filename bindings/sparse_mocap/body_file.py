@@ -24,6 +24,7 @@ import numpy as np
 
 from ._core import Body, ConfigError, FormatError, read_motion, standard_joint_names
 from .files import write_text
+from .json_keys import unique_keys
 from .mappings import to_standard
 from .table_errors import TableError, read_lines
 
@@ -91,7 +92,7 @@ def body_of_motion(
 def _parsed(path: FilePath) -> dict[str, Any]:
     try:
         whole = json.loads("\n".join(read_lines(path, BodyFileError)),
-                           object_pairs_hook=_without_repeats)  # fmt: skip
+                           object_pairs_hook=unique_keys)  # fmt: skip
     except json.JSONDecodeError as error:
         raise BodyFileError(path, error.lineno, f"is not JSON: {error.msg}") from None
     except (ValueError, RecursionError) as error:
@@ -103,15 +104,6 @@ def _parsed(path: FilePath) -> dict[str, Any]:
             path, 0, f'is not a body file; it must be an object with "format": "{_FORMAT}"'
         )
     return whole
-
-
-def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for key, value in pairs:
-        if key in found:
-            raise ValueError(f"repeats the key {key!r}")
-        found[key] = value
-    return found
 
 
 def _check_keys(path: FilePath, value: dict[str, Any], known: Any, where: str) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 from . import site_names
 from .calibration import Calibration, SensorCalibration
 from .files import write_text
+from .json_keys import unique_keys
 from .table_errors import TableError, read_lines
 
 __all__ = ["CalibrationFileError", "read_calibration", "write_calibration"]
@@ -64,7 +65,7 @@ def read_calibration(path: Path) -> Calibration:
     """
     try:
         whole = json.loads("\n".join(read_lines(path, CalibrationFileError)),
-                           object_pairs_hook=_without_repeats)  # fmt: skip
+                           object_pairs_hook=unique_keys)  # fmt: skip
     except json.JSONDecodeError as error:
         raise CalibrationFileError(path, error.lineno, f"is not JSON: {error.msg}") from None
     except (ValueError, RecursionError) as error:
@@ -158,12 +159,3 @@ def _array(refuse: Any, key: str, value: Any) -> Any:
         if abs(array @ array.T - np.eye(3)).max() > 1e-3 or determinant < 0:
             raise refuse(f"is no rotation (determinant {determinant:.3f})")
     return array
-
-
-def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for key, value in pairs:
-        if key in found:
-            raise ValueError(f"repeats the key {key!r}")
-        found[key] = value
-    return found

@@ -45,6 +45,15 @@ class OptionInfo:
     highest: float | None = None
     choices: tuple[str, ...] = ()
 
+    @property
+    def possible_values(self) -> str:
+        """What it can be set to, in words."""
+        if self.kind == "flag":
+            return "true or false"
+        if self.choices:
+            return ", ".join(self.choices)
+        return f"{self.lowest:g} to {self.highest:g}"
+
 
 @dataclass(frozen=True)
 class Experiment:

@@ -73,7 +73,7 @@ def preset_items(method: str) -> Items:
 def option_items(method: str) -> Items:
     """The options of a method; descriptions say what is possible."""
     return [
-        (option.name, option.name, f"{option.help} ({possible_values(option)})")
+        (option.name, option.name, f"{option.help} ({option.possible_values})")
         for known in _methods()
         if known.name == method
         for option in known.options
@@ -92,15 +92,6 @@ def default_of(method: str, option: str) -> str:
 def has_best_quality(method: str) -> bool:
     """Whether the method can use the whole take for every frame."""
     return any(known.works_on_whole_takes for known in _methods() if known.name == method)
-
-
-def possible_values(option: Any) -> str:
-    """What an option can be."""
-    if option.kind == "flag":
-        return "true or false"
-    if option.choices:
-        return ", ".join(option.choices)
-    return f"{option.lowest:g} to {option.highest:g}"
 
 
 def _methods() -> tuple[Any, ...]:

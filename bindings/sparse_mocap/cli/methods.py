@@ -9,7 +9,7 @@ import click
 from rich.table import Table
 
 from .._core import method_infos
-from ..methods import MethodInfo, OptionInfo, method_info
+from ..methods import MethodInfo, method_info
 from ..methods import methods as all_methods
 from .console import print_table
 
@@ -60,7 +60,7 @@ def _show(method: MethodInfo) -> None:
         click.echo(f"evaluate --experiment {experiment.name}: {experiment.help}")
     table = Table("--set", "default", "range", "", box=None, pad_edge=False)
     for option in method.options:
-        table.add_row(option.name, option.default, _range(option), option.help)
+        table.add_row(option.name, option.default, option.possible_values, option.help)
     print_table(table)
 
 
@@ -76,11 +76,3 @@ def _needs(method: MethodInfo) -> str:
 
 def _quality(method: MethodInfo) -> str:
     return ", ".join(["live"] * method.works_live + ["best"] * method.works_on_whole_takes)
-
-
-def _range(option: OptionInfo) -> str:
-    if option.kind == "flag":
-        return "true, false"
-    if option.choices:
-        return ", ".join(option.choices)
-    return f"{option.lowest:g} to {option.highest:g}"
