@@ -86,7 +86,9 @@ def body_of_motion(
     try:
         return Body(motion.skeleton.bones, performer or Path(path).stem)
     except ConfigError as error:
-        raise FormatError(f"{os.fspath(path)}: is no body to measure: {error}") from None
+        raise FormatError(
+            f"{os.fspath(path)}: is not a body that can be measured: {error}"
+        ) from None
 
 
 def _parsed(path: FilePath) -> dict[str, Any]:

@@ -171,7 +171,7 @@ def sensor_inputs(
 
     Without a calibration they are worn at the ends of their bones, as the sites they are named by
     ask for; positions along the bone, by site, win over both. Raises CalibrationError when a
-    sensor has no calibration, and ConfigError for a name that is no site.
+    sensor has no calibration, and ConfigError for an unknown site.
     """
     pairs = zip(names, channels, strict=True)
     if calibration is None:
@@ -211,12 +211,12 @@ def _worn_at(take: Take, sites: Mapping[str, str]) -> dict[str, str]:
     for name in sites:
         if name not in take.sensors:
             known = ", ".join(take.sensors)
-            raise CalibrationError(f"the take has no sensor {name!r}; it has {known}")
+            raise CalibrationError(f"the take has no sensor {name!r}; choose from {known}")
     worn = {name: sites.get(name, name) for name in take.sensors}
     for name, site in worn.items():
         if site not in site_names():
             raise CalibrationError(
-                f"{name}: {site!r} is no site; known are {', '.join(site_names())}"
+                f"{name}: unknown sensor location {site!r}; choose from {', '.join(site_names())}"
             )
         twins = [other for other, at in worn.items() if at == site]
         if len(twins) > 1:

@@ -72,7 +72,7 @@ def read_calibration(path: Path) -> Calibration:
         raise CalibrationFileError(path, 0, str(error) or "is nested too deeply") from None
     if not isinstance(whole, dict) or whole.get("format") != _FORMAT:
         raise CalibrationFileError(
-            path, 0, f'is no calibration; it must be an object with "format": "{_FORMAT}"'
+            path, 0, f'is not a calibration file; it must be an object with "format": "{_FORMAT}"'
         )
     _check_keys(path, "", whole, ("format", "format_version", "sensors"), ("sensors",))
     version = whole.get("format_version", 1)
@@ -127,7 +127,9 @@ def _value(path: Path, where: str, key: str, value: Any) -> Any:
 
     if key == "site":
         if value not in site_names():
-            raise refuse(f"is {value!r}, which is no site; known are {', '.join(site_names())}")
+            raise refuse(
+                f"is the unknown sensor location {value!r}; choose from {', '.join(site_names())}"
+            )
         return value
     if key == "notes":
         if not isinstance(value, list) or not all(isinstance(note, str) for note in value):
@@ -157,5 +159,5 @@ def _array(refuse: Any, key: str, value: Any) -> Any:
     if key == "R_site_sensor":
         determinant = float(np.linalg.det(array))
         if abs(array @ array.T - np.eye(3)).max() > 1e-3 or determinant < 0:
-            raise refuse(f"is no rotation (determinant {determinant:.3f})")
+            raise refuse(f"is not a rotation (determinant {determinant:.3f})")
     return array

@@ -145,7 +145,7 @@ def _fields(path: str | os.PathLike[str], line: int, text: str) -> list[str]:
             "unexpected end of data": "a quote is not closed on its line;"
             " write a quote within quotes twice",
             "',' expected after '\"'": "text follows a quoted field; put a comma between fields",
-        }.get(str(error), f"is no line of CSV ({error}); mend it")
+        }.get(str(error), f"is not a line of CSV ({error}); correct it")
         raise TableError(path, line, problem) from None
     return [field.strip(" \t") for field in fields]
 

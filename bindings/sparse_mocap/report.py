@@ -93,7 +93,7 @@ class LiveMatch:
 
 
 def is_unlike_the_database(solved: Reconstruction) -> bool:
-    """Whether the database holds nothing like the performance, so that the result is a guess."""
+    """Whether the database has nothing like the performance, so that the result is a guess."""
     return relative_misfit(solved) > LARGEST_MISFIT
 
 

@@ -196,7 +196,7 @@ def _check_values(path: Path, columns: TakeColumns, lines: NDArray[np.intp]) -> 
     if columns.orientation is not None:
         refuse(
             abs(np.linalg.norm(columns.orientation, axis=1) - 1) > 0.01,
-            "qw,qx,qy,qz is not of length 1, so it is no rotation",
+            "qw,qx,qy,qz is not of length 1, so it is not a rotation",
         )
     if columns.position is not None:
         refuse(

@@ -138,7 +138,7 @@ def _compare(
 def _show_in_blender(output: Path, named: Path | None) -> int:
     blender = find_blender(named)
     if blender is None:
-        missing = f"{named} is no program" if named else "no Blender was found"
+        missing = f"{named} is not a program" if named else "no Blender was found"
         click.echo(f"Left out take.blend and figures.png: {missing}", err=True)
         return 1
     click.echo("Rendering in Blender ...")

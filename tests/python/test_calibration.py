@@ -320,13 +320,13 @@ SENSOR = {
     ("change", "told"),
     [
         ({"scael": 1.0}, "sensors.a.scael is unknown; the nearest is scale"),
-        ({"site": "nose"}, "sensors.a.site is 'nose', which is no site"),
+        ({"site": "nose"}, "sensors.a.site is the unknown sensor location 'nose'"),
         ({"scale": "1"}, "sensors.a.scale must be a number"),
         ({"scale": 0}, "sensors.a.scale is 0; it must be from 0.01"),
         ({"position_along_bone": 1.5}, "sensors.a.position_along_bone is 1.5; it must be from 0"),
         ({"place": 0.5}, "sensors.a.place is unknown; the nearest is"),
         ({"R_site_sensor": [[1, 0], [0, 1]]}, "numbers in the shape"),
-        ({"R_site_sensor": np.diag([1, 1, -1]).tolist()}, "is no rotation .determinant -1"),
+        ({"R_site_sensor": np.diag([1, 1, -1]).tolist()}, "is not a rotation .determinant -1"),
         ({"notes": "x"}, "notes must be a list"),
         ({"is_position_determined": 1}, "must be true or false"),
     ],
@@ -345,7 +345,7 @@ def test_a_broken_file_is_refused_by_key(tmp_path: Path, change: dict, told: str
     [
         ("", ":1: is not JSON"),
         ('{\n"a": 1,,\n}', ":2: is not JSON"),
-        ("[]", "is no calibration"),
+        ("[]", "is not a calibration"),
         ('{"format": "sparse_mocap_calibration"}', "sensors is missing"),
         ('{"format": "sparse_mocap_calibration", "sensors": {}}', "a sensor or more"),
         (

@@ -215,7 +215,7 @@ def test_reconstruct_writes_motion_positions_and_report(
     assert told["sites"] == ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
     assert (told["format"], told["format_version"]) == ("sparse_mocap_report", 1)
     assert told["options"]["method"] == "path_regression"
-    assert f"{told['latency_ms']:.0f} ms behind" in result.stdout
+    assert f"{told['latency_ms']:.0f} ms delay" in result.stdout
     assert f"sensors match the motion database: {told['match']}" in result.stdout
     assert sum(told["clips"].values()) == len(times)
     assert set(told["frames"][0]) == {"time_s", "misfit_mps2", "spread_m", "clip"}
@@ -290,4 +290,4 @@ def test_reconstruct_says_when_the_database_knows_nothing_of_it(
         told[name] = cli("reconstruct", *arguments).stdout.splitlines()
     assert len(told["known"]) == 1
     assert len(told["unknown"]) == 2
-    assert "holds nothing like this performance" in told["unknown"][1]
+    assert "has nothing like this take" in told["unknown"][1]

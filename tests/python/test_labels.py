@@ -83,7 +83,7 @@ def test_letters_of_every_language_are_compared_in_any_case(tmp_path: Path) -> N
         ("file,actor\na,b,\n", ":2: has 3 fields, the header has 2; "),
         ('file,actor\nx,"b\ny,c"\n', ":2: a quote is not closed on its line; "),
         ('file,actor\n"x"y,b\n', ":2: text follows a quoted field; put a comma"),
-        ("file,actor\n" + "x" * 140_000 + ",b\n", ":2: is no line of CSV (field larger than"),
+        ("file,actor\n" + "x" * 140_000 + ",b\n", ":2: is not a line of CSV (field larger than"),
         ("actor,file\nb,\n", ":2: names no file; write its name"),
         ("actor,file\na,x\nb,y\nc,X\n", ':4: "X" is described in line 2 already; leave one'),
         ("", ": is empty; the header is file,"),

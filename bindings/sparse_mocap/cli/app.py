@@ -75,7 +75,7 @@ def app() -> None:
 
 
 def run(arguments: Sequence[str] | None = None) -> int:
-    """Runs a command line (the process' own when None) and returns its exit code."""
+    """Runs a command line (sys.argv when None) and returns its exit code."""
     try:
         result = app.main(arguments, prog_name="sparse-mocap", standalone_mode=False)
     except click.ClickException as error:
@@ -85,6 +85,6 @@ def run(arguments: Sequence[str] | None = None) -> int:
         Fault("cancelled").show()
         return 130
     except BrokenPipeError:
-        sys.stderr.close()  # the reader is gone: suppress messages at exit
+        sys.stderr.close()  # nothing reads the output any more: suppress messages at exit
         return 1
     return result if isinstance(result, int) else 0

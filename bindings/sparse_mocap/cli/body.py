@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap body``: the performer's own proportions."""
+"""``sparse-mocap body``: writes the performer's proportions."""
 
 from __future__ import annotations
 
@@ -18,13 +18,15 @@ __all__ = ["body"]
 @click.argument("clip", metavar="[CLIP]", required=False, type=FilePath)
 @click.option(
     "--height", "height_m", metavar="METRES", type=float,
-    help="The performer's height, where there is no motion file of them.",
+    help="The performer's height, if there is no motion file of them.",
 )  # fmt: skip
-@click.option("-o", "--output", type=FilePath, required=True, help="The body (.json).")
+@click.option(
+    "-o", "--output", type=FilePath, required=True, help="The body file to write (.json)."
+)
 def body(clip: Path | None, height_m: float | None, output: Path) -> None:
     """Writes the performer's body from a motion file of them, or from their height.
 
-    Methods that need a calibrated body take it as --body.
+    Use the file with --body in other commands.
     """
     check_ending(output, ".json")
     if (clip is None) == (height_m is None):
@@ -36,4 +38,4 @@ def body(clip: Path | None, height_m: float | None, output: Path) -> None:
         assert height_m is not None
         found = body_of_height(height_m)
         write_body(output, found, f"a height of {height_m:g} m")
-    click.echo(f"{output}: a body of {found.height_m:.2f} m")
+    click.echo(f"{output}: body height {found.height_m:.2f} m")

@@ -61,7 +61,7 @@ class Shake(click.ParamType):  # type: ignore[type-arg]
 @click.option("--stand", type=Span(), required=True, help="When the performer stood still, in s.")
 @click.option(
     "--pose", type=click.Choice(standing_pose_names()), default="arms_down", show_default=True,
-    help="How: arms hanging with palms at the thighs, or T-pose with palms down.",
+    help="The pose for --stand: arms hanging with palms at the thighs, or T-pose with palms down.",
 )  # fmt: skip
 @click.option(
     "--arms", type=Span(), help="When both elbows were bent (same as --move bend_elbows=...)."
@@ -98,7 +98,7 @@ def calibrate_command(
 
     The performer stands still, bends both elbows about five times with the upper arms at the sides
     and the thumbs forward, and squats about five times; or makes other guided movements (--move).
-    Values that these do not determine are reported and left at the location's defaults.
+    Values that these movements do not determine are reported and keep their defaults.
     """
     check_ending(output, ".json")
     recorded = read_take(take)

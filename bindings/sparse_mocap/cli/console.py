@@ -70,7 +70,7 @@ def progress_bar(label: str) -> Iterator[ProgressCallback]:
 
 @contextmanager
 def import_bar(label: str) -> Iterator[tuple[ProgressCallback, DetailsCallback]]:
-    """As progress_bar, for imports: shows files, frames, MB/s and the time left.
+    """Like progress_bar, for imports: shows files, frames, MB/s and the time left.
 
     Yields the callbacks ``progress`` and ``details``.
     """
@@ -139,7 +139,7 @@ def status_line() -> Iterator[Callable[[str], None]]:
 
 
 def warn(lines: Sequence[str]) -> None:
-    """Prints the first warnings, and the number of the others."""
+    """Prints the first warnings, and how many more there are."""
     for line in lines[:_MOST_WARNINGS]:
         click.echo(f"warning: {' '.join(line.split())}", err=True)
     if len(lines) > _MOST_WARNINGS:

@@ -79,7 +79,7 @@ def _tensor(name: str, kind: str, shape: tuple[int, ...], num_bytes: int) -> dic
 
 
 def is_copy(clip: Clip) -> bool:
-    """Whether a clip is another one mirrored, reversed or at another tempo."""
+    """Whether a clip is a copy of another one: mirrored, reversed or at another tempo."""
     return clip.is_mirrored or clip.is_reversed or clip.tempo != 1.0
 
 
@@ -171,7 +171,7 @@ def show(info: Mapping[str, Any]) -> None:
     for model in info["models"]:
         click.echo(f"model    {_model_line(model)}")
     if info["other_arrays"]:
-        click.echo(f"further  {_listed(list(map(_tensor_text, info['other_arrays'])))}")
+        click.echo(f"other    {_listed(list(map(_tensor_text, info['other_arrays'])))}")
     for kind in ("skipped", "duplicates"):
         files = info[kind]
         for file in files[:_MOST_FILES]:

@@ -79,8 +79,8 @@ def emulate(
 ) -> None:
     """Plays a take over a pseudo-terminal, in the protocol of a device.
 
-    Prints the path of the pseudo-terminal on the first line (one line for each sensor, if a port
-    has only one), starts playing when a program opens it, and ends after the take.
+    Prints the path of the pseudo-terminal on the first line (one line for each sensor, if each has
+    its own port), starts playing when a program opens it, and ends after the take.
     """
     take = noisy(read_take(take_path), noise_presets()[noise], seed)
     faults = Faults(

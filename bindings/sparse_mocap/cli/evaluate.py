@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap evaluate``: how good reconstructions are on motion that is known."""
+"""``sparse-mocap evaluate``: measures the errors of reconstructions of known motion."""
 
 from __future__ import annotations
 
@@ -36,34 +36,40 @@ __all__ = ["evaluate"]
 @click.command()
 @click.option(
     "--database-source", "source", metavar="DIR", type=FilePath, required=True,
-    help="The folder of motion capture that is both database and tests.",
+    help="The folder of motion capture, for both the database and the tests.",
 )  # fmt: skip
 @click.option(
     "--scenario", type=click.IntRange(1, 3), required=True,
     help="; ".join(f"{number}: {text}" for number, text in SCENARIOS.items()) + ".",
 )  # fmt: skip
 @click.option(
-    "--tests", metavar="GLOB", help="Files to test; without it one for each actor and class."
+    "--tests", metavar="GLOB", help="Files to test; by default one for each actor and class."
 )
-@click.option("--json", "json_path", type=FilePath, help="Writes all figures.")
-@click.option("--plots", type=FilePath, help="Writes pictures of the errors into this folder.")
+@click.option("--json", "json_path", type=FilePath, help="Write all results as JSON.")
+@click.option("--plots", type=FilePath, help="Write plots of the errors to this folder.")
 @click.option(
     "--method", "names", type=click.Choice([method.name for method in methods()]), multiple=True,
-    help="May be repeated.  [default: all that need a database alone]",
+    help="The methods to evaluate. Can be repeated.  [default: all that need only a database]",
 )  # fmt: skip
-@click.option("--preset", "presets", multiple=True, help="May be repeated.")
+@click.option(
+    "--preset", "presets", multiple=True, help="The presets to evaluate. Can be repeated."
+)
 @set_option
 @click.option(
     "--experiment", "experiments", multiple=True, metavar="NAME",
-    help="Runs a comparison of the method's paper; `methods NAME` lists them. May be repeated.",
+    help="Run a comparison from the method's paper; `methods NAME` lists them. Can be repeated.",
 )  # fmt: skip
-@click.option("--paper", is_flag=True, help="Runs every comparison of the methods' papers.")
-@click.option("--offline", is_flag=True, help="Runs best quality too, where methods have it.")
-@click.option("--gyroscopes", is_flag=True, help="Sensors have gyroscopes, which are used.")
+@click.option("--paper", is_flag=True, help="Run all comparisons from the methods' papers.")
+@click.option(
+    "--offline", is_flag=True, help="Also evaluate best quality, for methods that have it."
+)
+@click.option("--gyroscopes", is_flag=True, help="Also simulate gyroscopes, and use them.")
 @click.option("--sites", type=Sites(), default=PAPER_SITES, help="Sensor locations.")
 @noise_option
 @seed_option
-@click.option("--cache", type=FilePath, help="Keeps the database here for the next evaluation.")
+@click.option(
+    "--cache", type=FilePath, help="Folder to save the database in, for the next evaluation."
+)
 def evaluate(
     source: Path,
     scenario: int,
@@ -84,9 +90,9 @@ def evaluate(
 ) -> None:
     """Measures errors on held-out clips.
 
-    Each clip is reconstructed from what simulated sensors read on it; the clip, its copies and
-    what the scenario excludes are hidden from the database. Errors are the RMS over 21 joints in
-    the heading frame, a mean over each clip's frames.
+    Each clip is reconstructed from simulated sensors, without using the clip itself, its copies and
+    the clips that the scenario excludes. Errors are the RMS over 21 joints in the heading frame,
+    averaged over each clip's frames.
     """
     names, presets = _renamed(names, presets)
     common = Settings(
@@ -116,7 +122,7 @@ def evaluate(
 def _renamed(
     names: Sequence[str], presets: Sequence[str]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Returns methods and presets as they are called now, telling of those that are not."""
+    """Returns methods and presets by their current names, with a warning for each old name."""
     kept = []
     methods_found = list(names)
     for preset in presets:
@@ -142,7 +148,7 @@ def _contenders(
     for preset in presets:
         if preset not in known:
             raise click.BadParameter(
-                f"no method here has the preset {preset!r}; there are {', '.join(sorted(known))}",
+                f"unknown preset {preset!r}; choose from {', '.join(sorted(known))}",
                 param_hint="'--preset'",
             )
     return tuple(
@@ -151,7 +157,7 @@ def _contenders(
 
 
 def _experiments(names: Sequence[str], wanted: Sequence[str]) -> list[tuple[str, Experiment]]:
-    """Returns the experiments named, all when none is, with their methods."""
+    """Returns the experiments with these names, or all if there are none, and their methods."""
     known = [
         (method.name, experiment)
         for method in methods()
@@ -161,9 +167,9 @@ def _experiments(names: Sequence[str], wanted: Sequence[str]) -> list[tuple[str,
     there = [experiment.name for _, experiment in known]
     for name in wanted:
         if name not in there:
+            choices = f"choose from {', '.join(there)}" if there else "these methods have none"
             raise click.BadParameter(
-                f"no experiment is called {name!r}; there are {', '.join(there) or 'none'}",
-                param_hint="'--experiment'",
+                f"unknown experiment {name!r}; {choices}", param_hint="'--experiment'"
             )
     return [pair for pair in known if not wanted or pair[1].name in wanted]
 
@@ -172,7 +178,7 @@ def _experiments(names: Sequence[str], wanted: Sequence[str]) -> list[tuple[str,
 def _database(
     source: Path, cache: Path | None, progress: ProgressCallback
 ) -> Iterator[MotionDatabase]:
-    """Gives the database of a folder with mirrored copies, a kept one if nothing changed."""
+    """Yields the folder's database with mirrored copies, from the cache if nothing has changed."""
     with tempfile.TemporaryDirectory(prefix="sparse_mocap_") as temporary:
         path = Path(temporary) / "evaluation.smdb"
         if cache is not None:
@@ -188,7 +194,7 @@ def _database(
 def _fingerprint(source: Path) -> str:
     files = {path for same_name in motion_files(source).values() for path in same_name}
     files |= set(source.rglob("*.[aA][sS][fF]"))
-    files.add(Path(_core.__file__))  # another build may build another database
+    files.add(Path(_core.__file__))  # another version may build a different database
     seen = [[str(path), path.stat().st_size, path.stat().st_mtime_ns] for path in sorted(files)]
     return hashlib.sha256(json.dumps(seen).encode()).hexdigest()[:12]
 
@@ -197,8 +203,8 @@ def _write(
     found: Sequence[tuple[str, Evaluation]], json_path: Path | None, plots: Path | None
 ) -> None:
     if json_path is not None:
-        told = [{"title": title} | evaluation.as_dict() for title, evaluation in found]
-        write_json(json_path, found[0][1].as_dict() if len(found) == 1 else told)
+        reports = [{"title": title} | evaluation.as_dict() for title, evaluation in found]
+        write_json(json_path, found[0][1].as_dict() if len(found) == 1 else reports)
     if plots is not None:
         from ..plots import plot_evaluation
 

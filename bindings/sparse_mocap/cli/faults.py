@@ -70,5 +70,5 @@ def _missing(error: ImportError) -> str:
     package = (error.name or "").partition(".")[0]
     package = {"serial": "pyserial"}.get(package, package)
     if package in ("matplotlib", "pyserial", "rich"):
-        return f"this needs {package}; install it with: pip install 'sparse-mocap[cli]'"
+        return f"this command needs {package}; install it with: pip install 'sparse-mocap[cli]'"
     return str(error)

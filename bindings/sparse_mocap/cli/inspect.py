@@ -77,10 +77,10 @@ def inspect(
     print_table(_table(inspections))
     if len(inspections) == 1:
         _show_one(inspections[0])
-        _keep(inspections[0], save_mapping, remember)
+        _save(inspections[0], save_mapping, remember)
     elif remember:
         for inspection in inspections:
-            _keep(inspection, None, remember)
+            _save(inspection, None, remember)
 
 
 def _inspect(path: Path, by_hand: dict[str, str] | None, forget: bool) -> Inspection:
@@ -121,7 +121,7 @@ def _show_one(inspection: Inspection) -> None:
         click.echo(f"{standard:<10} {joint}{error}")
 
 
-def _keep(inspection: Inspection, save_mapping: Path | None, remember: bool) -> None:
+def _save(inspection: Inspection, save_mapping: Path | None, remember: bool) -> None:
     if inspection.mapping is None or inspection.motion is None:
         return
     joints = inspection.mapping.joints

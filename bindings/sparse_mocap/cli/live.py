@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap live``: sensors into poses as they come, watched in the terminal."""
+"""``sparse-mocap live``: reconstructs poses live and shows the state in the terminal."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ from .record import FIRST_SAMPLE_TIMEOUT_S, attached
 
 __all__ = ["live"]
 
-_LOOK_S = 0.01
-_SHOW_S = 0.2
-_SETTLE_S = 1.0
+_POLL_S = 0.01
+_REFRESH_S = 0.2
+_MORE_SENSORS_S = 1.0  # how long to wait for further sensors after the first sample
 
 
 @click.command()
@@ -53,11 +53,11 @@ _SETTLE_S = 1.0
 @click.option(
     "--calibration", "calibration_path", type=FilePath, help="The sensors' calibration (.json)."
 )
-@click.option("--positions", type=FilePath, help="Streams the joints' positions to a file (.csv).")
-@click.option("--seconds", type=click.FloatRange(0.1), help="Ends by itself.")
+@click.option("--positions", type=FilePath, help="Also write the joint positions (.csv).")
+@click.option("--seconds", type=click.FloatRange(0.1), help="Stop after this time.")
 @click.option(
     "--attach", is_flag=False, flag_value=0, type=click.IntRange(min=0), metavar="[PID]",
-    help="Watches a capture that runs (the only one, or that of a process).",
+    help="Attach to a running capture (the only one, or the one with this process id).",
 )  # fmt: skip
 def live(
     ports: tuple[str, ...],
@@ -76,10 +76,10 @@ def live(
     seconds: float | None,
     attach: int | None,
 ) -> None:
-    """Shows sensors and the motion that is reconstructed from them, until Ctrl-C.
+    """Shows sensors and how well the motion is reconstructed, until Ctrl-C.
 
-    For each sensor: rate, loss, last value and state; and how well the motion fits the readings and
-    how long it takes from a movement to its pose. Nothing is recorded.
+    For each sensor: rate, loss, last value and state. For the reconstruction: how well the sensors
+    match the motion database, and the delay from a movement to its pose. Nothing is recorded.
     """
     choice = method_choice(method, preset, settings)
     require_given(choice, database_path, model_path, body_path)
@@ -91,7 +91,7 @@ def live(
         else:
             config = config_of(ports, driver, baud, options, sites)
             client = _own_capture(stack, config)
-        status = _settled(client, sites)
+        status = _status(client, sites)
         session = LiveSession(
             client,
             status,
@@ -119,26 +119,26 @@ def _own_capture(stack: ExitStack, config: Any) -> CaptureClient:
 
 
 def _leave(client: CaptureClient) -> None:
-    """Lets the capture go, which removes its folder; others may be attached and go on with it."""
+    """Detaches from the capture; removes its folder if no other program is attached."""
     try:
         is_over = client.leave()
-    except CaptureError:  # it was killed
+    except CaptureError:  # the capture was killed
         is_over = True
     if is_over:
         shutil.rmtree(client.folder, ignore_errors=True)
 
 
-def _settled(client: CaptureClient, sites: tuple[str, ...] | None) -> dict[str, Any]:
-    """Waits until no more sensors turn up, and returns the status with their sites."""
+def _status(client: CaptureClient, sites: tuple[str, ...] | None) -> dict[str, Any]:
+    """Waits for the sensors, and returns the status with their sites."""
     client.wait_for_samples(FIRST_SAMPLE_TIMEOUT_S)
-    time.sleep(_SETTLE_S)
+    time.sleep(_MORE_SENSORS_S)
     client.skip()
     status = client.status()
     for sensor, site in zip(status["sensors"], sites or (), strict=False):
         sensor["site"] = site
     if status["are_sites_guessed"] and not sites:
-        told = ", ".join(f"{sensor['name']} as {sensor['site']}" for sensor in status["sensors"])
-        warn([f"nobody said where the sensors are worn; took {told} (see --sites)"])
+        assumed = ", ".join(f"{sensor['name']} on {sensor['site']}" for sensor in status["sensors"])
+        warn([f"sensor locations not given, assuming {assumed}; see --sites"])
     return status
 
 
@@ -149,11 +149,11 @@ def _watch(
     screen = stack.enter_context(Live(console=console, auto_refresh=False, transient=True))
     stop = stack.enter_context(interrupted())
     begin = time.monotonic()
-    next_show = begin
+    next_refresh = begin
     while not stop.is_set() and (seconds is None or time.monotonic() - begin < seconds):
         session.advance()
         now = time.monotonic()
-        if now >= next_show and console.is_terminal:
+        if now >= next_refresh and console.is_terminal:
             screen.update(view(client.status(), session), refresh=True)
-            next_show = now + _SHOW_S
-        time.sleep(_LOOK_S)
+            next_refresh = now + _REFRESH_S
+        time.sleep(_POLL_S)

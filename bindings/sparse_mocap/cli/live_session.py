@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A live reconstruction: a capture's samples, step by step into poses."""
+"""Reconstructs poses live from the samples of a capture."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from .options import MethodChoice
 
 __all__ = ["LiveSession"]
 
-_NUM_POSES = 250  # that figures are averaged over
+_NUM_POSES = 250  # the match and the delays are over the last poses
 
 
 class LiveSession:
-    """Reconstructs what a capture's sensors measure, as it comes."""
+    """Reconstructs poses live from the samples of a capture."""
 
     def __init__(
         self,
@@ -59,12 +59,12 @@ class LiveSession:
         self.step_s: deque[float] = deque(maxlen=_NUM_POSES)
 
     def stream_to(self, file: TextIO) -> None:
-        """Writes every pose's joint positions, heading frame, to a positions file as it comes."""
+        """Writes the joint positions of each new pose, in the heading frame, to this file."""
         self._file = file
         file.write(position_header(self._reconstructor.skeleton.names) + "\n")
 
     def advance(self) -> None:
-        """Takes what has arrived and makes the poses that are due."""
+        """Reads the samples that have arrived and reconstructs the poses that are due."""
         self._reconstructor.push(self._client.read())
         begin = time.perf_counter()
         estimates = self._reconstructor.advance(time.monotonic())
@@ -80,12 +80,12 @@ class LiveSession:
         return self._live_match.match
 
     def summary(self) -> str:
-        """One line on the whole session."""
+        """A summary of the session in one line."""
         if not self.num_poses:
-            return "no pose: not every sensor delivered data"
+            return "no poses: not all sensors sent data"
         return (
-            f"{self.num_poses} poses; sensors match the motion database: {self.match}; from "
-            f"movement to pose {1e3 * np.median(self.latencies_s):.0f} ms (worst "
+            f"{self.num_poses} poses; sensors match the motion database: {self.match}; delay "
+            f"from movement to pose {1e3 * np.median(self.latencies_s):.0f} ms (worst "
             f"{1e3 * max(self.latencies_s):.0f} ms)"
         )
 
@@ -101,12 +101,12 @@ class LiveSession:
 
 
 def _sites(calibration: Calibration | None, names: list[str]) -> list[str]:
-    """Returns where sensors of these names are worn. Raises CaptureError for an unknown one."""
+    """Returns the locations of these sensors. Raises CaptureError for an unknown one."""
     if calibration is not None:
         return [sensor.site for sensor in sensor_inputs(calibration, names, [()] * len(names))]
     for name in names:
         if name not in site_names():
             raise CaptureError(
-                f"unknown sensor location {name!r}; say with --sites where the sensor is worn"
+                f"unknown sensor location {name!r}; give the sensor locations with --sites"
             )
     return names

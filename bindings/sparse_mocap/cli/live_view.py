@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What ``sparse-mocap live`` shows."""
+"""The status display of ``sparse-mocap live``."""
 
 from __future__ import annotations
 
@@ -18,9 +18,11 @@ _COLOURS = {"streaming": "green", "live": "green", "failed": "red", "silent": "r
 
 
 def view(status: dict[str, Any], session: LiveSession) -> RenderableType:
-    """A capture's links and sensors, and how the reconstruction does."""
+    """Returns a capture's links and sensors, and the state of the reconstruction."""
     return Group(
-        *(_link(link) for link in status["links"]), _sensors(status, session), _fit(session)
+        *(_link(link) for link in status["links"]),
+        _sensors(status, session),
+        _reconstruction(session),
     )
 
 
@@ -29,11 +31,13 @@ def _link(link: dict[str, Any]) -> Text:
     text = Text(f"{link['opened_as'] or link['port']}  {link['driver']}  ")
     text.append(state, _COLOURS.get(state, "yellow"))
     counters = link["counters"]
-    odd = [f"{name} {count}" for name, count in counters.items() if count and name in _TOLD]
-    return text.append(f"  {link['message'] or link['device_message']}  {', '.join(odd)}")
+    problems = [
+        f"{name} {count}" for name, count in counters.items() if count and name in _PROBLEMS
+    ]
+    return text.append(f"  {link['message'] or link['device_message']}  {', '.join(problems)}")
 
 
-_TOLD = ("bad_checksums", "malformed", "resyncs", "overruns", "device_resets", "device_errors")
+_PROBLEMS = ("bad_checksums", "malformed", "resyncs", "overruns", "device_resets", "device_errors")
 
 
 def _sensors(status: dict[str, Any], session: LiveSession) -> Table:
@@ -55,11 +59,11 @@ def _sensors(status: dict[str, Any], session: LiveSession) -> Table:
     return table
 
 
-def _fit(session: LiveSession) -> Text:
+def _reconstruction(session: LiveSession) -> Text:
     if not session.num_poses:
-        return Text("Waiting for data of every sensor")
+        return Text("Waiting for data from all sensors")
     return Text(
-        f"{session.num_poses} poses  match {session.match}  from movement to pose "
-        f"{1e3 * np.median(session.latencies_s):.0f} ms, of which computing "
-        f"{1e3 * np.median(session.step_s):.1f} ms"
+        f"{session.num_poses} poses  match {session.match}  delay from movement to pose "
+        f"{1e3 * np.median(session.latencies_s):.0f} ms, including "
+        f"{1e3 * np.median(session.step_s):.1f} ms of computing"
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap methods``: what methods there are, and what can be set."""
+"""``sparse-mocap methods``: lists the methods and their options."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ __all__ = ["methods"]
 
 @click.command()
 @click.argument("name", required=False)
-@click.option("--json", "as_json", is_flag=True, help="Prints everything as JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 def methods(name: str | None, as_json: bool) -> None:
-    """Lists the methods of reconstruction, or shows one with its options.
+    """Lists the reconstruction methods, or shows one with its options.
 
-    `reconstruct`, `live` and `evaluate` take their names as --method, and their options as
-    --set KEY=VALUE.
+    In `reconstruct`, `live` and `evaluate`, --method NAME chooses a method and --set KEY=VALUE sets
+    its options.
     """
     chosen = all_methods() if name is None else (method_info(name),)
     if as_json:
@@ -52,7 +52,7 @@ def _show(method: MethodInfo) -> None:
         click.echo(method.paper)
     click.echo(f"Sensors: {_sensors(method)}, each with {', '.join(method.required_channels)}")
     if method.optional_channels:
-        click.echo(f"Also uses, where there is: {', '.join(method.optional_channels)}")
+        click.echo(f"Also uses, if available: {', '.join(method.optional_channels)}")
     click.echo(f"Needs: {_needs(method)}. Quality: {_quality(method)}.")
     for preset in method.presets:
         click.echo(f"--preset {preset.name}: {preset.help}")

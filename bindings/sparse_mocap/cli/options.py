@@ -118,17 +118,17 @@ class Span(click.ParamType):  # type: ignore[type-arg]
 
 
 def _position_option(name: str) -> Decorator:
-    """Gives a command the parameter ``name``: locations and positions along the bones.
+    """Adds the parameter ``name``: locations and positions along the bones.
 
-    Scripts may still call it --place.
+    The old name --place still works.
     """
 
     def decorate(command: Callable[..., Any]) -> Callable[..., Any]:
         @functools.wraps(command)
         def with_old_name(*args: Any, place: tuple[tuple[str, float], ...], **more: Any) -> Any:
             if place:
-                said = " ".join(f"--position-along-bone {site}={x:g}" for site, x in place)
-                warn([f"--place is now called --position-along-bone: write {said}"])
+                current = " ".join(f"--position-along-bone {site}={x:g}" for site, x in place)
+                warn([f"--place is now called --position-along-bone: write {current}"])
                 more[name] = (*more[name], *place)
             return command(*args, **more)
 
@@ -163,30 +163,32 @@ seed_option: Decorator = click.option(
 
 method_option: Decorator = click.option(
     "--method", type=click.Choice([method.name for method in methods()]),
-    help=f"How motion is reconstructed; `methods` describes them.  [default: {DEFAULT_METHOD}]",
+    help=f"The reconstruction method; `methods` describes them.  [default: {DEFAULT_METHOD}]",
 )  # fmt: skip
 
 set_option: Decorator = click.option(
     "--set", "settings", type=Setting(), multiple=True, metavar="KEY=VALUE",
-    help="Sets an option of the method; `methods` lists them. Can be repeated.",
+    help="Set an option of the method; `methods NAME` lists them. Can be repeated.",
 )  # fmt: skip
 
-preset_option: Decorator = click.option("--preset", help="The method's settings by name.")
+preset_option: Decorator = click.option(
+    "--preset", help="A preset of the method; `methods NAME` lists them."
+)
 
 model_option: Decorator = click.option(
     "--model", "model_path", metavar="M.smmodel", type=FilePath,
-    help="For methods that need a trained model; `train` makes one.",
+    help="The trained model, for methods that need one; see `train`.",
 )  # fmt: skip
 
 body_option: Decorator = click.option(
     "--body", "body_path", metavar="BODY.json", type=FilePath,
-    help="The performer's body, as `body` writes it; for methods that need one.",
+    help="The performer's body, for methods that need one; see `body`.",
 )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class MethodChoice:
-    """What a command line says of the method."""
+    """The method that the command line chooses, with its settings."""
 
     method: str
     preset: str | None
@@ -201,7 +203,7 @@ class MethodChoice:
 def method_choice(
     method: str | None, preset: str | None, options: Sequence[tuple[str, str]] = ()
 ) -> MethodChoice:
-    """Returns the method wanted, telling of names that are called otherwise now.
+    """Returns the chosen method, with a warning if the name is an old one.
 
     Raises BadParameter for a preset that the method does not have.
     """
@@ -212,7 +214,7 @@ def method_choice(
     known = [known.name for known in info.presets]
     if preset is not None and preset not in known:
         raise click.BadParameter(
-            f"{info.name} has no preset {preset!r}; it has {', '.join(known)}",
+            f"{info.name} has no preset {preset!r}; choose from {', '.join(known)}",
             param_hint="'--preset'",
         )
     return MethodChoice(info.name, preset, dict(options))
@@ -221,14 +223,14 @@ def method_choice(
 def positions_along_bone_of(
     sites: Sequence[str], positions: Sequence[tuple[str, float]]
 ) -> list[float] | None:
-    """Returns a position for each site, None when none is named. Raises BadParameter."""
-    named = dict(positions)
-    for site in named:
+    """Returns a position for each site, or None if none are given. Raises BadParameter."""
+    given = dict(positions)
+    for site in given:
         if site not in sites:
             raise click.BadParameter(
                 f"there is no sensor at {site}", param_hint="'--position-along-bone'"
             )
-    return [named.get(site, 1.0) for site in sites] if named else None
+    return [given.get(site, 1.0) for site in sites] if given else None
 
 
 def check_ending(path: Path, *endings: str) -> str:

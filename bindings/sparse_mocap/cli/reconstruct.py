@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap reconstruct``: a take into a motion."""
+"""``sparse-mocap reconstruct``: reconstructs a motion from a take."""
 
 from __future__ import annotations
 
@@ -47,7 +47,9 @@ __all__ = ["body_of", "model_of", "reconstruct", "require_given"]
 @click.command()
 @click.argument("take", metavar="TAKE.csv", type=FilePath)
 @click.option("--database", "database_path", metavar="DB.smdb", type=FilePath)
-@click.option("-o", "--output", type=FilePath, required=True, help="The motion (.bvh).")
+@click.option(
+    "-o", "--output", type=FilePath, required=True, help="The motion file to write (.bvh)."
+)
 @method_option
 @preset_option
 @set_option
@@ -55,22 +57,25 @@ __all__ = ["body_of", "model_of", "reconstruct", "require_given"]
 @body_option
 @click.option(
     "--offline", is_flag=True,
-    help="Best quality: every frame may look at the whole take. Without it, live quality.",
+    help="Best quality: use the whole take for every frame. Without it, live quality.",
 )  # fmt: skip
 @click.option(
     "--gyroscopes/--no-gyroscopes", default=True, show_default=True,
-    help="Also uses the direction of gravity, where gyroscopes (gx,gy,gz) tell it.",
+    help="Also use the gravity direction, for sensors with gyroscopes (gx,gy,gz).",
 )  # fmt: skip
-@click.option("--positions", type=FilePath, help="Also writes the joints' positions (.csv).")
+@click.option("--positions", type=FilePath, help="Also write the joint positions (.csv).")
 @frame_option
-@click.option("--json", "json_path", type=FilePath, help="Also writes a report on every frame.")
+@click.option(
+    "--json", "json_path", type=FilePath, help="Also write a report on every frame as JSON."
+)
 @position_along_bone_option
 @click.option(
     "--calibration", "calibration_path", type=FilePath, help="The sensors' calibration (.json)."
 )
 @click.option(
-    "--clap", type=Span(), help="When all sensors saw one clap or jump: brings them onto one clock."
-)
+    "--clap", type=Span(),
+    help="When all sensors measured the same clap or jump, to synchronize their clocks.",
+)  # fmt: skip
 def reconstruct(
     take: Path,
     database_path: Path | None,
@@ -89,14 +94,14 @@ def reconstruct(
     calibration_path: Path | None,
     clap: tuple[float, float] | None,
 ) -> None:
-    """Turns a take into a motion on the method's skeleton and at its rate.
+    """Reconstructs a motion from a take.
 
-    With a motion database that is the database's standard skeleton and rate.
+    The motion has the motion database's skeleton and frame rate, or the method's if none is used.
     """
     check_ending(output, ".bvh")
     choice = method_choice(method, preset, settings)
     require_given(choice, database_path, model_path, body_path)
-    recorded = read_take(take) if clap is None else aligned(read_take(take), clap)[0]
+    recorded = _read(take, clap)
     calibration = _calibration(calibration_path, recorded, positions_along_bone)
     database = None if database_path is None else MotionDatabase(database_path)
     with progress_bar("Reconstructing") as progress:
@@ -117,16 +122,21 @@ def reconstruct(
     write_bvh(output, solved.motion)
     _write_positions(positions, solved, frame)
     if json_path is not None:
-        about = _about(take, database_path, choice, offline, solved)
-        write_json(json_path, about | report(solved, database))
+        write_json(json_path, _report(take, database, choice, offline, solved))
     warn(unit_warnings(recorded))
     _print_summary(output, solved)
+
+
+def _read(path: Path, clap: tuple[float, float] | None) -> Take:
+    """Returns the take, with synchronized clocks if the time of a clap is given."""
+    take = read_take(path)
+    return take if clap is None else aligned(take, clap)[0]
 
 
 def _calibration(
     path: Path | None, take: Take, positions_along_bone: tuple[tuple[str, float], ...]
 ) -> Calibration | None:
-    """Returns the calibration; without one, positions must be those of the take's sites."""
+    """Returns the calibration; without one, checks that the take has the positions' sensors."""
     if path is not None:
         return read_calibration(path)
     positions_along_bone_of(take.sites, positions_along_bone)
@@ -136,7 +146,7 @@ def _calibration(
 def require_given(
     choice: MethodChoice, database: Path | None, model: Path | None, body: Path | None
 ) -> None:
-    """Raises MissingParameter for what the method needs and the command line lacks."""
+    """Raises UsageError if a file that the method needs is not given."""
     given = {"database": database, "model": model or database, "body": body}
     for need in choice.info.needs:
         if given[need] is None:
@@ -149,7 +159,7 @@ def body_of(path: Path | None) -> Skeleton | None:
 
 
 def model_of(choice: MethodChoice, path: Path | None, database: MotionDatabase | None) -> Any:
-    """Returns the model of the method: from a file of its own, or kept in the database."""
+    """Returns the model that the method needs, from its file or from the database."""
     if path is not None:
         return read_model(path)
     if "model" in choice.info.needs and database is not None:
@@ -161,24 +171,25 @@ def _write_positions(path: Path | None, solved: Reconstruction, frame: str) -> N
     if path is None:
         return
     motion = solved.motion
-    where = motion.joint_positions(frame)
-    write_positions(path, solved.readings.times_s, motion.skeleton.names, where)
+    positions = motion.joint_positions(frame)
+    write_positions(path, solved.readings.times_s, motion.skeleton.names, positions)
 
 
-def _about(
+def _report(
     take: Path,
-    database: Path | None,
+    database: MotionDatabase | None,
     choice: MethodChoice,
     offline: bool,
     solved: Reconstruction,
 ) -> dict[str, Any]:
+    """Returns the options and the result, ready for JSON."""
     late = solved.latency_s
     channels = {channel for sensor in solved.readings.channels for channel in sensor}
-    return {
+    about = {
         "format": "sparse_mocap_report",
         "format_version": 1,
         "take": str(take),
-        "database": None if database is None else str(database),
+        "database": None if database is None else database.path,
         "options": {
             "method": choice.method,
             "preset": choice.preset,
@@ -190,17 +201,18 @@ def _about(
         "rate_hz": solved.rate_hz,
         "latency_ms": None if late is None else 1000.0 * late,
     }
+    return about | report(solved, database)
 
 
 def _print_summary(output: Path, solved: Reconstruction) -> None:
     late = solved.latency_s
-    quality = "best quality" if late is None else f"live quality, {1000.0 * late:.0f} ms behind"
+    quality = "best quality" if late is None else f"live quality, {1000.0 * late:.0f} ms delay"
     click.echo(
         f"{output}: {solved.motion.num_frames} frames, {quality}; sensors match the motion "
         f"database: {match(solved)}"
     )
     if is_unlike_the_database(solved):
         click.echo(
-            "The database holds nothing like this performance: the motion is a guess. "
-            "Add motion capture of such movements, and check where and how the sensors are worn."
+            "The motion database has nothing like this take, so the motion is a guess. Add motion "
+            "capture of similar movements, and check the locations and orientations of the sensors."
         )

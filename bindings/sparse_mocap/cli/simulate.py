@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap simulate``: takes of simulated sensors."""
+"""``sparse-mocap simulate``: simulates takes."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ __all__ = ["simulate"]
 @position_along_bone_option
 @click.option(
     "--with-positions", is_flag=True,
-    help="Also writes where each sensor is (px,py,pz), as tracked sensors tell.",
+    help="Also write the position of each sensor (px,py,pz), as tracked sensors send it.",
 )  # fmt: skip
 def simulate(
     clip: Path,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``sparse-mocap train``: the model that a method learns."""
+"""``sparse-mocap train``: trains the model of a method."""
 
 from __future__ import annotations
 
@@ -28,14 +28,16 @@ __all__ = ["train"]
 
 @click.command()
 @click.argument("clips", metavar="CLIP...", nargs=-1, type=FilePath)
-@click.option("--method", required=True, help="The method that learns; `methods` lists them.")
-@click.option("-o", "--output", type=FilePath, required=True, help="The model (.smmodel).")
+@click.option("--method", required=True, help="The method to train; `methods` lists them.")
+@click.option(
+    "-o", "--output", type=FilePath, required=True, help="The model file to write (.smmodel)."
+)
 @preset_option
 @set_option
 @click.option(
     "--take", "takes", type=(str, FilePath), multiple=True, metavar="CLIP TAKE.csv",
-    help="What real sensors recorded of a clip, named by its file name. May be repeated; clips"
-    " without one are simulated.",
+    help="The file name of a clip, and the take that real sensors recorded of it. Can be repeated;"
+    " for other clips, sensors are simulated.",
 )  # fmt: skip
 def train(
     clips: tuple[Path, ...],
@@ -47,7 +49,7 @@ def train(
 ) -> None:
     """Trains a method's model from motion files and folders of them.
 
-    Methods that work on a motion database as it is need no training, and say so.
+    Methods that need only a motion database are not trained.
     """
     check_ending(output, ".smmodel")
     choice = method_choice(method, preset, settings)
@@ -60,7 +62,7 @@ def train(
     unknown = set(recorded) - {path.name for path in files}
     if unknown:
         raise click.BadParameter(
-            f"no clip is called {', '.join(sorted(unknown))}", param_hint="'--take'"
+            f"no clip has the file name {', '.join(sorted(unknown))}", param_hint="'--take'"
         )
     examples = [_example(path, recorded.get(path.name)) for path in files]
     with progress_bar("Training") as progress:
@@ -72,7 +74,7 @@ def train(
             progress=progress,
         )
     write_model(output, model)
-    click.echo(f"{output}: a model of {choice.method} from {len(examples)} clips")
+    click.echo(f"{output}: model of {choice.method}, trained on {len(examples)} clips")
 
 
 def _example(path: Path, take: Path | None) -> TrainingClip:

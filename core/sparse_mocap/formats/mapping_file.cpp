@@ -58,7 +58,7 @@ JointNames read_mapping(const std::filesystem::path& path) {
   const auto& names = standard_joint_names();
   for (const auto& [standard, name] : joints)
     if (std::find(names.begin(), names.end(), standard) == names.end())
-      throw FormatError({path}, "'" + standard + "' is no standard joint",
+      throw FormatError({path}, "'" + standard + "' is not a standard joint",
                         "the nearest is '" + nearest_standard_joint(standard) + "'");
   return joints;
 }

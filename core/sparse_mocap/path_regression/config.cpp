@@ -81,7 +81,7 @@ const OptionTable<Config>& options() {
           .number("sharpness", &Config::sharpness, 0.0, 1e3,
                   "how much better paths count more than others")
           .number("regression_ridge", &Config::regression_ridge, 0.0, 1e9,
-                  "caution of the regression from readings to poses; 0 turns it off")
+                  "ridge of the regression from readings to poses; 0: no regression")
           .number("pose_weight", &Config::pose_weight, 1e-6, 1e6, "weight of the retrieved poses")
           .number("motion_weight", &Config::motion_weight, 0.0, 1e6,
                   "weight of the retrieved movement since the frame before")

@@ -71,7 +71,7 @@ std::array<int, kNumStandardJoints> joints_by_hand(const Skeleton& rig, const Jo
     const auto at = std::find(names.begin(), names.end(), standard);
     if (at == names.end())
       throw MappingError("mapping by hand: '" + standard +
-                         "' is no standard joint, the nearest is '" +
+                         "' is not a standard joint, the nearest is '" +
                          nearest_standard_joint(standard) + "'");
     const int joint = rig.find(name);
     if (joint < 0)

@@ -34,7 +34,7 @@ MethodEntry method() {
   MethodEntry entry;
   entry.info.name = "tautges2011";
   entry.info.title = "Tautges et al. 2011";
-  entry.info.summary = "The published method for one to six accelerometers, as its paper has it.";
+  entry.info.summary = "The method of the paper, for a few accelerometers.";
   entry.info.paper =
       "Tautges, Zinke, Krueger, Baumann, Weber, Helten, Mueller, Seidel, Eberhardt: Motion "
       "Reconstruction Using Sparse Accelerometer Data, ACM Trans. Graph. 30 (2011)";
