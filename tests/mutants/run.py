@@ -25,7 +25,8 @@ WORK = ROOT / "build" / "mutants"
 SOURCE = WORK / "source"
 BUILD = SOURCE / "build" / "release"  # placed as the sources' own build is, for ccache
 PACKED = WORK / "packed"
-COPIED = ("CMakeLists.txt", "CMakePresets.json", "bindings", "core", "tests/python")
+COPIED = ("CMakeLists.txt", "CMakePresets.json", "bindings", "core")
+COPIED += ("tests/python", "tests/real_data.py")
 TEST_TIMEOUT_S = 600.0
 
 
