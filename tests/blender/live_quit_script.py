@@ -7,18 +7,17 @@ from pathlib import Path
 
 import bpy
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
-sys.path.append(str(ROOT / "bindings"))
+sys.path.insert(0, str(Path(__file__).parent))
+import installed
+
+installed.prepare_paths()
 HOW, PORT, FOLDER, SERIAL = sys.argv[sys.argv.index("--") + 1 :]
 sys.path.append(SERIAL)
 
 from live_support import DRIVER, OPTIONS, until  # noqa: E402
 
-import blender_addon  # noqa: E402 - found by the lines above
-from blender_addon.session import live, sensors  # noqa: E402
-
-blender_addon.register()
+installed.register()
+live, sensors = installed.module("session.live"), installed.module("session.sensors")
 live.begin(sensors.new_session(sensors.Port(PORT, DRIVER, options=OPTIONS), Path(FOLDER)))
 session = live.current()
 until(lambda: session.state.error or session.state.is_connected)

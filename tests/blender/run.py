@@ -19,9 +19,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-sys.path[:0] = [str(ROOT), str(HERE), str(HERE.parent)]
-sys.path.append(str(ROOT / "bindings"))  # unless PYTHONPATH names another one
+sys.path.insert(0, str(HERE))
+
+import installed  # noqa: E402 - before bpy, which reads the user folders that it sets
+
+installed.prepare_paths()
 
 import bpy  # noqa: E402 - as a module it must be imported before its submodules
 
@@ -30,6 +32,7 @@ Test = Callable[..., None]
 
 def main() -> int:
     """Run the tests and return how many failed."""
+    installed.install()
     import support
 
     outcomes = {"passed": 0, "failed": 0, "skipped": 0}

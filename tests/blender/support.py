@@ -14,13 +14,11 @@ from functools import cache
 from pathlib import Path
 
 import bpy
+import installed
 import numpy as np
 from real_data import NOT_SET, real_data_folder
 
-import blender_addon
-
 SITES = ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
-ADDON = "blender_addon"
 
 
 class Skipped(Exception):
@@ -70,12 +68,12 @@ def library() -> Library:
 def fresh_blender() -> Iterator[None]:
     """An empty scene with the add-on registered."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    blender_addon.register()
+    installed.register()
     try:
         yield
     finally:
         if is_registered():
-            blender_addon.unregister()
+            installed.unregister()
 
 
 def is_registered() -> bool:
@@ -84,9 +82,7 @@ def is_registered() -> bool:
 
 def addon(name: str):
     """A module of the add-on as it is registered now."""
-    import importlib
-
-    return importlib.import_module(f"{ADDON}.{name}")
+    return installed.module(name)
 
 
 def settings():
@@ -191,4 +187,4 @@ def undo() -> None:
 
 
 def loaded_modules() -> set[str]:
-    return {name for name in sys.modules if name.startswith(f"{ADDON}.")}
+    return {name for name in sys.modules if name.startswith(f"{installed.ADDON}.")}

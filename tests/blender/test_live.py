@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 import bpy
+import installed
 import numpy as np
 from connected import connected
 from live_support import emulated, is_alive, own_runtime, serial_folder, until
@@ -21,8 +22,6 @@ from support import (
     settings,
     undo,
 )
-
-import blender_addon
 
 
 def _ticked(num_poses: int) -> list[tuple[object, float]]:
@@ -174,7 +173,7 @@ def test_another_file_ends_the_session_and_its_capture(tmp_path):
 def test_unregister_leaves_no_capture(tmp_path):
     with connected(tmp_path) as session:
         [capture] = _captures()
-        blender_addon.unregister()
+        installed.unregister()
         assert not session.is_running
         until(lambda: not is_alive(capture.pid))
         assert _captures() == []
@@ -184,10 +183,10 @@ def test_unregister_leaves_a_recording_which_is_found_again(tmp_path):
     with connected(tmp_path):
         bpy.ops.sparse_mocap.record_take()
         [capture] = _captures()
-        blender_addon.unregister()
+        installed.unregister()
         time.sleep(3.0)  # longer than a capture lingers
         assert is_alive(capture.pid)
-        blender_addon.register()
+        installed.register()
         scanner = addon("session.port_scanner").port_scanner
         scanner.latest()
         scanner.wait(10)

@@ -2,9 +2,8 @@
 import threading
 
 import bpy
+import installed
 from support import addon, error_of, is_registered, library, loaded_modules, settings
-
-import blender_addon
 
 
 def _ours() -> list[str]:
@@ -26,13 +25,13 @@ def _handlers() -> int:
 
 
 def test_twenty_times_leaves_nothing():
-    blender_addon.unregister()
+    installed.unregister()
     before = (_handlers(), threading.active_count(), set(dir(bpy.types.Scene)))
     for _ in range(20):
-        blender_addon.register()
+        installed.register()
         assert is_registered()
         assert len(_ours()) >= 8
-        blender_addon.unregister()
+        installed.unregister()
         assert _ours() == []
         assert (_handlers(), threading.active_count(), set(dir(bpy.types.Scene))) == before
         assert loaded_modules() == set()
@@ -43,7 +42,7 @@ def test_unregister_ends_the_job_at_work(tmp_path):
     steps = addon("session.database")
     job, _ = steps.build_job([str(library().motions)], str(output), steps.BuildChoices(mirror=True))
     job.start()
-    blender_addon.unregister()
+    installed.unregister()
     assert not job.is_running
     assert list(tmp_path.iterdir()) in ([], [output])  # done already, or nothing of it
 

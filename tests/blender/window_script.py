@@ -10,16 +10,15 @@ import time
 import traceback
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import bpy
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))
-sys.path.append(str(ROOT / "bindings"))
+sys.path.insert(0, str(Path(__file__).parent))
+import installed
 
-import blender_addon  # noqa: E402 - found by the lines above
-from blender_addon.ops import job_operator  # noqa: E402
-from blender_addon.session import job as jobs  # noqa: E402
+installed.prepare_paths()
+job_operator, jobs = installed.module("ops.job_operator"), installed.module("session.job")
 
 SCENARIO, MOTIONS, DATABASE, TAKE, FOLDER = sys.argv[sys.argv.index("--") + 1 :]
 TIMEOUT_S = 60.0
@@ -33,7 +32,7 @@ def slow_down(pause_s: float) -> None:
     """
     on_progress = jobs.Job._on_progress
 
-    def slow(self: jobs.Job, *args: object) -> bool:
+    def slow(self: Any, *args: object) -> bool:
         end = time.monotonic() + pause_s
         while time.monotonic() < end and not self.is_cancelled:
             time.sleep(0.01)
@@ -49,7 +48,7 @@ def view() -> dict[str, object]:
     return {"window": window, "area": area, "region": region}
 
 
-def start(operator: Callable[..., set[str]], **options: object) -> jobs.Job:
+def start(operator: Callable[..., set[str]], **options: object) -> Any:
     with bpy.context.temp_override(**view()):
         assert operator("INVOKE_DEFAULT", True, **options) == {"RUNNING_MODAL"}
     job = jobs.current()
@@ -57,7 +56,7 @@ def start(operator: Callable[..., set[str]], **options: object) -> jobs.Job:
     return job
 
 
-def start_building() -> jobs.Job:
+def start_building() -> Any:
     slow_down(TIMEOUT_S)
     path = str(Path(FOLDER) / "new.smdb")
     return start(bpy.ops.sparse_mocap.build_database, source=MOTIONS, filepath=path, mirror=True)
@@ -151,11 +150,11 @@ def load_meanwhile() -> Steps:
 def unregister_meanwhile() -> Steps:
     job = start_building()
     yield 0.15
-    blender_addon.unregister()
+    installed.unregister()
     assert not job.is_running
     yield 0.5
     assert files() == []
-    blender_addon.register()
+    installed.register()
 
 
 def quit_meanwhile() -> Steps:
@@ -371,6 +370,6 @@ def tick() -> float | None:
 
 
 bpy.context.preferences.view.show_splash = False
-blender_addon.register()
+installed.register()
 steps = SCENARIOS[SCENARIO]()
 bpy.app.timers.register(tick, persistent=True, first_interval=1.0)
