@@ -38,17 +38,30 @@ test_python() {
 # Blender's own suite waits for windows and sensors much of its time: the modules run meanwhile, one
 # after the other.
 test_blenders() {
-  in_blender=$ROOT/tests/blender/run.py
-  blender_suite="Blender $(blender --version | awk 'NR == 1 { print $2 }')"
-  begin_suite "$blender_suite" timeout 900 xvfb-run -a \
-    blender -b --factory-startup --python-exit-code 1 --python "$in_blender"
-  suite 'bpy 4.5' timeout 900 "$BPY45/bin/python" "$in_blender"
+  blender_suite="Blender $(PATH=$SYSTEM_PATH blender --version | awk 'NR == 1 { print $2 }')"
+  user=$(mktemp -d)
+  begin_suite "$blender_suite" in_blender "$ROOT"/build/packages/*-legacy-linux-x64.zip \
+    BLENDER_USER_RESOURCES="$user" BLENDER_USER_CONFIG="$user" BLENDER_USER_SCRIPTS="$user" \
+    xvfb-run -a blender -b --factory-startup --python-exit-code 1 --python
+  extension=$(echo "$ROOT"/build/packages/sparse_mocap-*[0-9].zip)
+  suite 'bpy 4.5' in_blender "$extension" "$BPY45/bin/python"
   if [ -n "$python313" ]; then
-    suite 'bpy 5.2' timeout 900 "$BPY52/bin/python" "$in_blender"
+    suite 'bpy 5.2' in_blender "$extension" "$BPY52/bin/python"
   else
     echo 'bpy 5.2 ... left out: no CPython 3.13 here (PYTHON313 may name one)'
   fi
   end_suite "$blender_suite"
+  rm -rf "$user"
+}
+
+# in_blender PACKAGE [NAME=VALUE...] COMMAND...: COMMAND runs Blender's tests on what it installs
+# from the release file, and sees nothing of the sources and their environment. For a shell of its
+# own, which becomes COMMAND so that it can be stopped.
+in_blender() {
+  package=$1
+  shift
+  exec timeout 900 env -u PYTHONPATH -u PYTHONNOUSERSITE PATH="$SYSTEM_PATH" \
+    SPARSE_MOCAP_PACKAGE="$package" "$@" "$ROOT/tests/blender/run.py"
 }
 
 # suite NAME COMMAND...: a test program and its line.
@@ -59,7 +72,7 @@ suite() {
   suite_start=$(date +%s)
   suite_status=0
   printf '%s ... ' "$suite_name"
-  "$@" >"$suite_log" 2>&1 </dev/null || suite_status=$?
+  ("$@") >"$suite_log" 2>&1 </dev/null || suite_status=$?
   report_suite $(($(date +%s) - suite_start))
 }
 

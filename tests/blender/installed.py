@@ -45,24 +45,37 @@ def prepare_paths() -> None:
         sys.path.append(str(ROOT / "bindings"))  # unless PYTHONPATH names another one
         return
     sys.path.append(str(_demo_alone()))
-    if "BLENDER_USER_RESOURCES" not in os.environ:
+    if _FOLDERS[0] not in os.environ:
+        if "bpy" in sys.modules:
+            raise SystemExit(f"set {', '.join(_FOLDERS)}: Blender has read them already")
         folder = _temporary("sparse_mocap_user_")
-        for name in _FOLDERS:
-            own = folder if name == _FOLDERS[0] else folder / name.rpartition("_")[2].lower()
-            own.mkdir(exist_ok=True)
-            os.environ[name] = str(own)
+        os.environ |= dict.fromkeys(_FOLDERS, str(folder))
 
 
-def install() -> None:
-    """Installs the release file as Blender's preferences do."""
+def install(path: str | Path = PACKAGE) -> None:
+    """Installs a release file as Blender's preferences do."""
     import bpy
 
     if IS_EXTENSION:
         bpy.ops.extensions.package_install_files(
-            filepath=PACKAGE, repo="user_default", enable_on_install=False
+            filepath=str(path), repo="user_default", enable_on_install=False, overwrite=True
         )
-    elif PACKAGE:
-        bpy.ops.preferences.addon_install(filepath=PACKAGE)
+    elif path:
+        bpy.ops.preferences.addon_install(filepath=str(path), overwrite=True)
+
+
+def remove() -> None:
+    """Removes what was installed, as Blender's preferences do."""
+    import bpy
+
+    if IS_EXTENSION:
+        repos = [repo.module for repo in bpy.context.preferences.extensions.repos]
+        index, name = repos.index("user_default"), ADDON.rpartition(".")[2]
+        bpy.ops.extensions.package_uninstall(repo_index=index, pkg_id=name)
+        return
+    window = bpy.context.window_manager.windows[0]  # the operator redraws the area it is called in
+    with bpy.context.temp_override(window=window, area=window.screen.areas[0]):
+        bpy.ops.preferences.addon_remove(module=ADDON)
 
 
 def register() -> None:

@@ -97,8 +97,9 @@ def serial_folder() -> Path:
 
     Raises Skipped when there is none.
     """
-    from support import Skipped
+    from support import Skipped, addon
 
+    addon("session.core").capture()  # knows the one in the release file
     known = importlib.util.find_spec("serial")
     if known is not None and known.submodule_search_locations:
         return Path(known.submodule_search_locations[0]).parent

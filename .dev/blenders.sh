@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# shellcheck shell=sh disable=SC2016,SC2153,SC2154 # some $ are for inner programs; ROOT is ./dev's
+#
+# Read by ./dev: Blenders with the release file installed; those of a later Debian each in a Debian
+# of its own.
+
+# verb_blender [VERSION [ARGS]]: opens that Blender with the add-on, installed anew from the release
+# file as animators do. Its settings are kept in build/.
+verb_blender() {
+  version=${1:-3.4}
+  [ $# -eq 0 ] || shift
+  need_blender "$version"
+  need_release_file "$version"
+  cd "$ROOT"
+  home=$ROOT/build/blender-$version
+  mkdir -p "$home/config" "$home/scripts"
+  QUIET='' step "Install the add-on in Blender $version" install_addon "$version"
+  run_blender "$@"
+}
+
+# need_blender VERSION: that Blender, and in $runner and $root how commands reach it.
+need_blender() {
+  runner=in_root
+  root=$CACHE/root-$1-2 # the last number counts the changes to make_root
+  case $1 in
+    3.4) runner='' && basics blender libgl1-mesa-dri python3-numpy && return ;;
+    4.3) suite=trixie ;;
+    5.2) suite=sid ;;
+    *) usage >&2 && exit 2 ;;
+  esac
+  basics
+  locked "$CACHE/lock" need_root "$root" "$suite"
+}
+
+# need_release_file VERSION: in $release_file what that Blender installs, made anew if the sources
+# changed.
+need_release_file() {
+  case $1 in
+    3.4) make_release_files --quick && set -- "$ROOT"/build/packages/*-legacy-linux-x64.zip ;;
+    *) make_release_files && set -- "$ROOT"/build/packages/sparse_mocap-*[0-9].zip ;;
+  esac
+  release_file=$1
+}
+
+install_addon() {
+  case $1 in
+    3.4) run_blender -b --python-exit-code 1 --python "$ROOT/.dev/install_addon.py" -- "$release_file" ;;
+    *) run_blender --command extension install-file -r user_default -e "$release_file" ;;
+  esac
+}
+
+run_blender() {
+  $runner env HOME="$HOME" DISPLAY="${DISPLAY:-}" XAUTHORITY="${XAUTHORITY:-$HOME/.Xauthority}" \
+    BLENDER_USER_RESOURCES="$home" BLENDER_USER_CONFIG="$home/config" \
+    BLENDER_USER_SCRIPTS="$home/scripts" blender "$@"
+}
+
+# need_root FOLDER SUITE: a Debian of its own that holds a Blender and the headers of its CPython.
+need_root() {
+  need_packages debootstrap
+  [ -d "$1" ] || QUIET='' step "Install Blender in a root of Debian $2" make_root "$1" "$2"
+}
+
+make_root() {
+  root=$1.part
+  as_root rm -rf "$root"
+  as_root debootstrap --variant=minbase "$2" "$root"
+  as_root cp -a /etc/apt/apt.conf.d "$root/etc/apt/"
+  as_root cp -L /etc/resolv.conf "$root/etc/"
+  # python3-cattr and -requests: Blender's extensions import them, unstable's package forgets them.
+  # libgl1: no package asks for it, and Blender opens no window without it.
+  apt_install in_root blender python3-numpy libgl1 libgl1-mesa-dri python3-cattr python3-requests
+  in_root sh -c 'set -e; mkdir /headers; cd /headers
+    python3 -c "import sys; print(*sys.version_info[:2], sep=chr(46))" >version
+    apt-get -o APT::Sandbox::User=root download "libpython$(cat version)-dev"
+    dpkg-deb -x ./*.deb .'
+  as_root mv "$root" "$1"
+}
+
+# in_root COMMAND...: in the folder $root, as root, with this machine's files where they are.
+in_root() {
+  as_root unshare --mount --propagation private sh -c 'set -e
+    mount -t proc proc "$0/proc"
+    for folder in /dev /tmp "$1" "$2"; do
+      mkdir -p "$0$folder"
+      mount --rbind "$folder" "$0$folder"
+    done
+    cd "$2"
+    shift 2
+    exec chroot "$0" env -C "$PWD" PATH=/usr/sbin:/usr/bin:/sbin:/bin "$@"' \
+    "$root" "$HOME" "$ROOT" "$@"
+}
