@@ -129,10 +129,10 @@ BAD = {
         "must ascend",
     ),
     "same time": (HEADER.encode() + b"1,head,1,2,3\n1,head,1,2,3\n", 3, "must ascend"),
-    "no rotation": (
+    "not a rotation": (
         b"time_s,sensor,ax,ay,az,qw,qx,qy,qz\n0,head,1,2,3,1,1,0,0\n",
         2,
-        "no rotation",
+        "not a rotation",
     ),
     "half a position": (b"time_s,sensor,ax,ay,az,px,pz\n", 1, "column py is missing"),
     "position in millimetres": (
