@@ -26,11 +26,11 @@ from live_support import DRIVER, OPTIONS  # noqa: E402
 from support import SITES  # noqa: E402
 
 import blender_addon  # noqa: E402 - found by the lines above
-from blender_addon import ui  # noqa: E402
 from blender_addon.scene import live as live_scene  # noqa: E402
 from blender_addon.scene import prompt  # noqa: E402
 from blender_addon.session import job as jobs  # noqa: E402
 from blender_addon.session import live  # noqa: E402
+from blender_addon.ui import registration as ui  # noqa: E402
 from blender_addon.ui.calibrate import SPARSEMOCAP_PT_calibration as CalibrationPanel  # noqa: E402
 from blender_addon.ui.live import SPARSEMOCAP_PT_live as LivePanel  # noqa: E402
 
