@@ -13,10 +13,11 @@ problems: list[Problem] = []  # the one that is shown
 
 
 class SPARSEMOCAP_OT_copy_report(Operator):
-    """Copy versions, folders and the reason to the clipboard, to paste them into a bug report"""
+    """Copy what a bug report needs to the clipboard."""
 
     bl_idname = "sparse_mocap.copy_report"
     bl_label = "Copy Report"
+    bl_description = "Copy versions, folders and the reason to the clipboard, for a bug report"
 
     def execute(self, context: Context) -> set[str]:
         """Copy the report."""
