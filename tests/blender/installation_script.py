@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Enables the add-on that is installed in another Blender, prints what its panel says, disables it.
 
-installation_script.py -- [hide_numpy | import_first FOLDER | rename FROM TO]
+installation_script.py -- ADDON [hide_numpy | import_first FOLDER | replace FILE BY]
 
 The line that begins with RESULT has the outcome as JSON.
 """
@@ -14,8 +14,7 @@ from types import SimpleNamespace
 
 import bpy
 
-ADDON = "sparse_mocap_addon"
-ARGUMENTS = sys.argv[sys.argv.index("--") + 1 :]
+ADDON, *ARGUMENTS = sys.argv[sys.argv.index("--") + 1 :]
 
 
 class Recorder:
@@ -87,8 +86,8 @@ def main() -> None:
         sys.path.insert(0, paths[0])
         import sparse_mocap._core  # noqa: F401
     outcome = {"first": enable(), "left": disable()}
-    if what == "rename":
-        Path(paths[0]).rename(paths[1])
+    if what == "replace":
+        Path(paths[1]).rename(paths[0])
         outcome |= {"second": enable(), "left_then": disable()}
     print(f"\nRESULT {json.dumps(outcome)}", flush=True)
     sys.stderr.flush()

@@ -3,6 +3,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -20,21 +21,25 @@ REINSTALL = "reinstall the add-on from the release file"
 PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
 
 
-def _installed(folder: Path) -> tuple[Path, Path]:
+def _installed(folder: Path, *, is_extension: bool = False) -> tuple[Path, Path]:
     """The add-on as from the release file, and its compiled module."""
     import sparse_mocap._core
 
     addon = folder / "scripts" / "addons" / ADDON
+    vendor = addon / "vendor" / "sparse_mocap"
+    if is_extension:
+        addon = folder / "extensions" / "user_default" / "sparse_mocap"
+        wheels = folder / "extensions" / ".local" / "lib" / f"python{PYTHON}" / "site-packages"
+        vendor = wheels / "sparse_mocap"
     ignored = shutil.ignore_patterns("__pycache__", "_core.*.so", "vendor")
     shutil.copytree(Path(blender_addon.__file__).parent, addon, ignore=ignored)
-    vendor = addon / "vendor" / "sparse_mocap"
     shutil.copytree(Path(sparse_mocap.__file__).parent, vendor, ignore=ignored)
     compiled = vendor / Path(sparse_mocap._core.__file__).name
     shutil.copy(sparse_mocap._core.__file__, compiled)
     return addon, compiled
 
 
-def _run(folder: Path, *arguments: object, has_window: bool = False) -> dict:
+def _run(folder: Path, *arguments: object, addon: str = ADDON, has_window: bool = False) -> dict:
     """What the script finds; no traceback is printed meanwhile."""
     command = [sys.executable, SCRIPT]
     if bpy.app.binary_path:
@@ -45,12 +50,13 @@ def _run(folder: Path, *arguments: object, has_window: bool = False) -> dict:
         "HOME": str(folder),  # the report shows it as ~
         "BLENDER_USER_SCRIPTS": str(folder / "scripts"),
         "BLENDER_USER_CONFIG": str(folder),
+        "BLENDER_USER_EXTENSIONS": str(folder / "extensions"),
         "LIBGL_ALWAYS_SOFTWARE": "1",
     }
     environment = {**os.environ, **own}
     environment.pop("PYTHONPATH", None)
     done = subprocess.run(
-        [*map(str, command), "--", *map(str, arguments)],
+        [*map(str, command), "--", addon, *map(str, arguments)],
         env=environment, capture_output=True, text=True, timeout=120,
     )  # fmt: skip
     said = done.stdout + done.stderr
@@ -82,7 +88,7 @@ def test_a_whole_installation_shows_the_steps(tmp_path):
 def test_the_compiled_module_was_removed_and_comes_back(tmp_path):
     _, compiled = _installed(tmp_path)
     removed = compiled.rename(tmp_path / compiled.name)
-    outcome = _run(tmp_path, "rename", removed, compiled)
+    outcome = _run(tmp_path, "replace", compiled, removed)
     assert _said(outcome) == (
         "The compiled file _core is missing in ~/scripts/addons/sparse_mocap_addon/vendor/"
         f"sparse_mocap, an antivirus may have removed it: allow it there and {REINSTALL}"
@@ -110,6 +116,42 @@ def test_a_damaged_module(tmp_path):
     compiled.write_bytes(compiled.read_bytes()[:40])
     said = _said(_run(tmp_path))
     assert said == f"The installation is incomplete ({compiled.name}: file too short): {REINSTALL}"
+
+
+def test_a_system_that_is_too_old(tmp_path):
+    _, compiled = _installed(tmp_path)
+    needed = compiled.read_bytes()
+    newest = max(re.findall(rb"GLIBC_2\.[1-9]\d", needed))
+    compiled.write_bytes(needed.replace(newest, b"GLIBC_9.99"))
+    said = _said(_run(tmp_path))
+    assert said.startswith("This system is too old for this release of Sparse Mocap (lib")
+    assert f"version `GLIBC_9.99' not found (required by {compiled.name})): update" in said
+
+
+def test_an_upgrade_in_a_running_session(tmp_path):
+    addon, _ = _installed(tmp_path)
+    manifest = addon / "blender_manifest.toml"
+    newer = tmp_path / "newer.toml"
+    newer.write_text(re.sub(r'(?m)^version = "(.*)"', 'version = "9.9.9"', manifest.read_text()))
+    second = _run(tmp_path, "replace", manifest, newer)["second"]
+    assert second["panels"] == EXPLAINED
+    assert re.fullmatch(
+        r"Sparse Mocap 9\.9\.9 was installed while \d\S+ was loaded: restart Blender",
+        second["says"],
+    )
+
+
+def test_as_an_extension(tmp_path):
+    if bpy.app.version < (4, 2):
+        raise Skipped("this Blender has no extensions")
+    addon = "bl_ext.user_default.sparse_mocap"
+    _, compiled = _installed(tmp_path, is_extension=True)
+    removed = compiled.rename(tmp_path / compiled.name)
+    outcome = _run(tmp_path, "replace", compiled, removed, addon=addon)
+    assert _said(outcome).startswith(
+        f"The compiled file _core is missing in ~/extensions/.local/lib/python{PYTHON}/"
+    )
+    assert "SPARSEMOCAP_PT_database" in outcome["second"]["panels"]
 
 
 def test_missing_files(tmp_path):
