@@ -136,6 +136,8 @@ def _conflict(is_from_before: bool) -> Problem | None:
         return installation.no_init_problem()
     compiled = sys.modules.get("sparse_mocap._core")
     place = Path(str(package.__file__)).parent
+    if place.resolve() == ADDON:
+        return installation.folder_name_problem()
     version = getattr(compiled, "__version__", "")
     return installation.conflict(
         (place, version or installation_paths.package_version(place)),

@@ -132,6 +132,11 @@ def addon_problem(error: BaseException) -> Problem:
     return Problem(_incomplete(_short(error)), error)
 
 
+def folder_name_problem() -> Problem:
+    """The add-on's folder has the name of the package, which therefore cannot be imported."""
+    return Problem(f"The add-on's folder must not be named {PACKAGE}: {_REINSTALL}")
+
+
 def no_init_problem() -> Problem:
     """The package's folder is there without the file that makes it a package."""
     return Problem(_incomplete(f"{PACKAGE}/__init__.py is missing"))

@@ -285,6 +285,15 @@ def test_the_folder_without_its_first_file(looked_up, tmp_path):
     assert "sparse_mocap/__init__.py is missing" in core.missing_reason()
 
 
+def test_the_add_on_has_the_name_of_the_package(looked_up):
+    module = ModuleType("sparse_mocap")
+    module.__file__ = str(core.ADDON / "__init__.py")
+    looked_up.setitem(sys.modules, "sparse_mocap", module)
+    assert core.missing_reason() == (
+        f"The add-on's folder must not be named sparse_mocap: {REINSTALL}"
+    )
+
+
 def test_a_hidden_numpy(looked_up):
     looked_up.setitem(sys.modules, "numpy", None)
     assert "has no NumPy" in core.missing_reason()
