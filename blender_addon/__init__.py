@@ -5,7 +5,13 @@
 operators and panels, one file for each step. Importing this package alone does not need Blender.
 """
 
+from __future__ import annotations
+
 import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .session.installation import Problem
 
 bl_info = {
     "name": "Sparse Mocap",
@@ -19,8 +25,16 @@ bl_info = {
 
 
 def register() -> None:
-    """Register the operators and panels."""
-    from . import ops, scene, ui
+    """Register the operators and panels, or the panel that says why they cannot work."""
+    problem = _problem()
+    if problem is not None:
+        from .ui import installation
+
+        installation.register(problem)
+        return
+    from . import scene
+    from .ops import registration as ops
+    from .ui import registration as ui
 
     scene.register()
     ops.register()
@@ -29,11 +43,32 @@ def register() -> None:
 
 def unregister() -> None:
     """Stop everything and unload the modules too, so that an upgrade loads its own."""
-    from . import ops, scene, ui
+    from .ui import installation
 
-    ui.unregister()
-    ops.unregister()
-    scene.unregister()
+    if installation.is_shown():
+        installation.unregister()
+    else:
+        from . import scene
+        from .ops import registration as ops
+        from .ui import registration as ui
+
+        ui.unregister()
+        ops.unregister()
+        scene.unregister()
     for name in [name for name in sys.modules if name.startswith(f"{__package__}.")]:
         del sys.modules[name]
         globals().pop(name.removeprefix(f"{__package__}."), None)
+
+
+def _problem() -> Problem | None:
+    """Why the add-on cannot work in this Blender; None when it can."""
+    from .session import core, installation
+
+    problem = core.problem()
+    if problem is None:
+        try:
+            from .ops import registration as _ops  # noqa: F401 - whether it can be imported
+            from .ui import registration as _ui  # noqa: F401
+        except Exception as error:  # a file is missing or damaged
+            problem = installation.addon_problem(error)
+    return problem

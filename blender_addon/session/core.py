@@ -3,13 +3,18 @@
 
 import importlib
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from types import ModuleType
 
-from .errors import InputError, one_line
+from . import installation, installation_paths
+from .errors import InputError, log
+from .installation import Problem
 
-VENDOR = Path(__file__).resolve().parents[1] / "vendor"
+ADDON = Path(__file__).resolve().parents[1]
+VENDOR = ADDON / "vendor"
 MODULES = (
     "sparse_mocap._core",
     "sparse_mocap.calibration_file",
@@ -32,66 +37,119 @@ CAPTURE_MODULES = (
 
 def core() -> ModuleType:
     """The package; raises InputError with one line for the animator when it is missing."""
-    module, reason = _found()
+    module, found = _found()
     if module is None:
-        raise InputError(reason)
+        raise InputError(found.reason if found else "")
     return module
 
 
 def missing_reason() -> str:
     """Why the package cannot be used and what to do; empty when it can."""
+    found = problem()
+    return found.reason if found else ""
+
+
+def problem() -> Problem | None:
+    """Why the package cannot be used, with what Python raised; None when it can."""
     return _found()[1]
 
 
 @cache
-def _found() -> tuple[ModuleType | None, str]:
-    try:
-        return _imported(), ""
-    except ModuleNotFoundError as error:
-        if (error.name or "").split(".")[0] != "sparse_mocap":
-            return (
-                None,
-                f"The Python package {error.name} is missing: install it in Blender's Python",
+def _found() -> tuple[ModuleType | None, Problem | None]:
+    is_from_before = "sparse_mocap._core" in sys.modules
+    found = _numpy_problem() or _conflict(is_from_before)
+    if found is None:
+        try:
+            module = _imported()
+        except Exception as error:  # the panel shows whatever a broken installation raises
+            log.debug("the core cannot be imported", exc_info=error)
+            return None, _conflict(is_from_before) or installation.import_problem(
+                error, installation.this_host(), _package_folder()
             )
-        return None, _not_there(error.name or "")
-    except Exception as error:  # the panel shows whatever a broken installation raises
-        return None, f"Sparse Mocap cannot be loaded, reinstall the add-on: {one_line(error)}"
+        found = _conflict(is_from_before)
+        if found is None:
+            return module, None
+    return None, found
 
 
 def capture() -> ModuleType:
     """The package's part for real sensors; raises InputError when it cannot be used."""
     core()
     try:
-        return _with_vendor(CAPTURE_MODULES)
+        return _imported_all(CAPTURE_MODULES)
     except ImportError as error:
         raise InputError(
             f"Real sensors need the Python package {error.name}: install it in Blender's Python"
         ) from error
 
 
+def searched_folders() -> list[Path]:
+    """The folders in which the package that belongs to this add-on may be."""
+    is_extension = __name__.startswith("bl_ext.")
+    folders = installation_paths.own_folders(ADDON, is_extension=is_extension)
+    return [VENDOR if folder == ADDON / "vendor" else folder for folder in folders]
+
+
 def _imported() -> ModuleType:
     """The package, with all its modules that the add-on uses."""
-    _with_vendor(MODULES)
+    importlib.invalidate_caches()
+    _imported_all(MODULES)
     return sys.modules["sparse_mocap"]
 
 
-def _with_vendor(names: tuple[str, ...]) -> ModuleType:
+def _imported_all(names: tuple[str, ...]) -> ModuleType:
     """Imports modules, some of which may be in the vendor folder, and returns the last."""
-    where = str(VENDOR)
-    if VENDOR.is_dir():
+    with _own_folder_first():
+        return [importlib.import_module(name) for name in names][-1]
+
+
+@contextmanager
+def _own_folder_first() -> Iterator[None]:
+    """Python looks for modules first in the folder that was installed with the add-on."""
+    own = installation_paths.own_package(searched_folders())
+    where = str(own.parent if own is not None else VENDOR)
+    is_there = Path(where).is_dir()
+    if is_there:
         sys.path.insert(0, where)
     try:
-        return [importlib.import_module(name) for name in names][-1]
+        yield
     finally:
-        if where in sys.path:
+        if is_there and where in sys.path:
             sys.path.remove(where)
 
 
-def _not_there(name: str) -> str:
-    python = f"{sys.version_info.major}.{sys.version_info.minor}"
-    if name == "sparse_mocap":
-        return "The add-on is incomplete, its core is missing: install it from the release file"
-    return (
-        f"This release of the add-on does not support Blender's Python {python}: "
-        "install the release for this Blender version"
+def _numpy_problem() -> Problem | None:
+    """Why NumPy does not suffice."""
+    try:
+        import numpy
+    except ImportError as error:
+        return installation.numpy_problem(error)
+    return installation.numpy_problem(numpy)
+
+
+def _conflict(is_from_before: bool) -> Problem | None:
+    """Why the package that is loaded, if one is, is not the one that belongs to the add-on."""
+    package = sys.modules.get("sparse_mocap")
+    if package is None:
+        return None
+    if getattr(package, "__file__", None) is None:
+        return installation.no_init_problem()
+    compiled = sys.modules.get("sparse_mocap._core")
+    place = Path(str(package.__file__)).parent
+    if place.resolve() == ADDON:
+        return installation.folder_name_problem()
+    version = getattr(compiled, "__version__", "")
+    return installation.conflict(
+        (place, version or installation_paths.package_version(place)),
+        installation_paths.own_package(searched_folders()),
+        (ADDON, installation_paths.addon_version(ADDON)),
+        is_from_before=is_from_before,
     )
+
+
+def _package_folder() -> Path | None:
+    """The folder of the package that is imported, or else of the one that was installed."""
+    file = getattr(sys.modules.get("sparse_mocap"), "__file__", None)
+    if file is not None:
+        return Path(file).parent
+    return installation_paths.own_package(searched_folders())

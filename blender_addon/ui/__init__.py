@@ -1,32 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panels, one file for each step, and the import dialog."""
+"""The sidebar panels, one file for each step, the import dialog, and what is shown instead of them.
 
-import bpy
-
-from . import calibrate, clips, database, import_motion, live, mapping, reconstruct, take
-from .step import forget_timers
-
-CLASSES = (
-    *database.CLASSES,
-    *clips.CLASSES,
-    *take.CLASSES,
-    *reconstruct.CLASSES,
-    *live.CLASSES,
-    *calibrate.CLASSES,
-    *mapping.CLASSES,
-)
-
-
-def register() -> None:
-    """Register the panels."""
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
-    import_motion.register()
-
-
-def unregister() -> None:
-    """Unregister the panels."""
-    forget_timers()
-    import_motion.unregister()
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+Importing this package and ``installation`` in it needs neither NumPy nor the core.
+"""

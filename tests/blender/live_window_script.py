@@ -27,7 +27,7 @@ sys.path.append(SERIAL)
 from live_support import DRIVER, OPTIONS  # noqa: E402
 from support import SITES  # noqa: E402
 
-ui, live_scene = installed.module("ui"), installed.module("scene.live")
+ui, live_scene = installed.module("ui.registration"), installed.module("scene.live")
 prompt, jobs = installed.module("scene.prompt"), installed.module("session.job")
 CalibrationPanel = installed.module("ui.calibrate").SPARSEMOCAP_PT_calibration
 LivePanel = installed.module("ui.live").SPARSEMOCAP_PT_live

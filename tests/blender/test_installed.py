@@ -7,7 +7,6 @@ import sys
 import zipfile
 from pathlib import Path
 
-import bpy
 import installed
 from support import Skipped, choose_files, is_registered, loaded_modules, reconstruct
 

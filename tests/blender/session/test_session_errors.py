@@ -35,7 +35,7 @@ def looked_for(monkeypatch):
 @pytest.mark.parametrize(
     ("module", "said"),
     [
-        ("sparse_mocap.not_there", "Python 3."),
+        ("sparse_mocap.not_there", "sparse_mocap/not_there is missing"),
         ("not_there_at_all", "not_there_at_all is missing"),
     ],
 )

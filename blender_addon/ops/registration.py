@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Registers the operators of all steps; imports NumPy."""
+
+import atexit
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..scene import prompt
+from ..scene.live import stop_ticking
+from ..session import job
+from ..session import live as live_session
+from ..session.calibrating import calibrations
+from ..session.database import databases
+from ..session.imported import file_summaries
+from ..session.port_scanner import port_scanner
+from ..session.take import takes
+from . import (
+    calibrate,
+    clips,
+    database,
+    import_motion,
+    job_operator,
+    live,
+    mapping,
+    reconstruct,
+    take,
+)
+
+CLASSES = (
+    *job_operator.CLASSES,
+    *import_motion.CLASSES,
+    *mapping.CLASSES,
+    *database.CLASSES,
+    *clips.CLASSES,
+    *take.CLASSES,
+    *reconstruct.CLASSES,
+    *live.CLASSES,
+    *calibrate.CLASSES,
+)
+
+
+@persistent
+def _before_load(*_: object) -> None:
+    """Stop everything before another .blend file is opened."""
+    job.cancel_current()
+    stop_ticking()
+    prompt.hide()
+    live_session.end()
+
+
+def _end_all() -> None:
+    """Leave no thread running when Python ends or the add-on is disabled."""
+    job.cancel_current()
+    live_session.end()
+    port_scanner.wait(1.0)
+    databases.close()
+    takes.close()
+    calibrations.close()
+    file_summaries.close()
+
+
+def register() -> None:
+    """Register the operators."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.app.handlers.load_pre.append(_before_load)
+    atexit.register(_end_all)
+
+
+def unregister() -> None:
+    """Stop everything and unregister the operators."""
+    stop_ticking()
+    prompt.hide()
+    _end_all()
+    atexit.unregister(_end_all)
+    bpy.app.handlers.load_pre.remove(_before_load)
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
