@@ -23,7 +23,7 @@ BLENDERS = {
 """The Blenders of each CPython that a compiled module may be for."""
 
 _REINSTALL = "reinstall the add-on from the release file"
-_SYSTEMS = {"linux": "Linux", "darwin": "macOS", "win": "Windows"}
+_SYSTEMS = {"musl": "Linux with musl", "linux": "Linux", "darwin": "macOS", "win": "Windows"}
 _MODULE = re.compile(r"_core\.(?:cpython-|cp)(\d)(\d+t?)(?:-([\w-]+))?\.(?:so|pyd)$")
 _WRONG_MACHINE = re.compile(
     r"wrong ELF class|(?:incompatible|wrong) architecture|not a valid Win32 application", re.I
@@ -80,7 +80,7 @@ def this_host() -> Host:
     """The Python that runs this, and the Blender around it."""
     python = f"{sys.version_info.major}.{sys.version_info.minor}"
     named = target_of(f"_core{importlib.machinery.EXTENSION_SUFFIXES[0]}")
-    system = named.system if named else _SYSTEMS.get(platform.system().lower()[:6], "")
+    system = named.system if named else _system(platform.system())
     machine = (named.machine if named else "") or _machine(platform.machine())
     if sys.maxsize < 2**32:
         machine = "32-bit"
@@ -94,9 +94,8 @@ def target_of(name: str) -> Target | None:
     found = _MODULE.fullmatch(name)
     if found is None:
         return None
-    tag = (found[3] or "").lower()
-    system = next((text for key, text in _SYSTEMS.items() if key in _system_part(tag)), "")
-    return Target(f"{found[1]}.{found[2]}", system, _machine(tag))
+    tag = found[3] or ""
+    return Target(f"{found[1]}.{found[2]}", _system(tag), _machine(tag))
 
 
 def compiled_modules(package: Path) -> list[str]:
@@ -171,7 +170,9 @@ def conflict(
     is_from_before: whether it was imported before the add-on was enabled.
     """
     (place, version), (addon_place, addon_version) = loaded, addon
-    differs = bool(version and addon_version) and _numbers(version)[:3] != _numbers(addon_version)
+    differs = (
+        bool(version and addon_version) and _numbers(version)[:3] != _numbers(addon_version)[:3]
+    )
     is_elsewhere = own is not None and place.resolve() != own.resolve()
     other = f"{version or 'another version'} in {home_hidden(str(place))}"
     if is_elsewhere and place.is_dir():
@@ -278,8 +279,9 @@ def _fits(target: Target, host: Target) -> bool:
     return target.system in ("", host.system) and target.machine in ("", host.machine)
 
 
-def _system_part(tag: str) -> str:
-    return "darwin" if "darwin" in tag else tag
+def _system(tag: str) -> str:
+    """The system in words, of a platform tag or of what the system calls itself."""
+    return next((text for key, text in _SYSTEMS.items() if key in tag.lower()), "")
 
 
 def _machine(tag: str) -> str:

@@ -42,6 +42,7 @@ def is_one_sentence(reason: str) -> bool:
         ("_core.cpython-313t-aarch64-linux-gnu.so", Target("3.13t", "Linux", "ARM")),
         ("_core.cpython-311-i386-linux-gnu.so", Target("3.11", "Linux", "32-bit")),
         ("_core.cpython-311-arm-linux-gnueabihf.so", Target("3.11", "Linux", "32-bit")),
+        ("_core.cpython-311-x86_64-linux-musl.so", Target("3.11", "Linux with musl", "x86-64")),
         ("_core.cpython-314-darwin.so", Target("3.14", "macOS", "")),
         ("_core.cp311-win_amd64.pyd", Target("3.11", "Windows", "x86-64")),
         ("_core.cp311-win_arm64.pyd", Target("3.11", "Windows", "ARM")),
