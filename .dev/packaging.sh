@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# shellcheck shell=sh disable=SC2016,SC2086,SC2153,SC2154 # lists of words split; ROOT is ./dev's
+# shellcheck shell=sh disable=SC2016,SC2086,SC2153,SC2154,SC2164 # words split; set -e is ./dev's
 #
 # Read by ./dev: the files that are handed out, for Linux x86-64 since glibc 2.28. zig compiles the
 # core once and the bindings for each CPython; the Python package in packaging/ makes the archives.

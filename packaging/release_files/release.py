@@ -66,7 +66,7 @@ def make_release(root: Path, modules: Files, pyserial: tuple[str, bytes]) -> Rel
     its wheel.
     """
     project = read_project(root)
-    private = (str(root), str(Path.home()))
+    private = (f"{root}/", f"{Path.home()}/")
     release = Release(
         project.version,
         [checked_module(name, data, private) for name, data in sorted(modules.items())],
