@@ -15,7 +15,10 @@ from .wheels import record_hash
 
 ENTRY = "PyInit__core"
 NEWEST_GLIBC = (2, 28)
-C_LIBRARIES = frozenset({"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2"})
+C_LIBRARIES = frozenset(
+    {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "ld-linux-x86-64.so.2"}
+)
+"""What comes with every glibc; the last, its loader, gives each thread its own variables."""
 MODULE_NAME = re.compile(r"(?:.*/)?(_core\.cpython-(\d)(\d+)-x86_64-linux-gnu\.so)")
 
 
