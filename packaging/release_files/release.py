@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All files of a release for Linux, made in one go, checked, and reported."""
+
+import dataclasses
+import hashlib
+import json
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+from .addons import extension_files, legacy_files
+from .archives import Files, tarred, unzipped, zipped
+from .checks import (
+    CheckedModule,
+    check_record,
+    check_same_modules,
+    checked_module,
+    modules_in,
+    python_tag,
+)
+from .errors import PackagingError
+from .project import Project, read_project
+from .sdist import sdist_files, sdist_name
+from .wheels import wheel_files, wheel_name
+
+LEGACY_PYTHON = "cp311"
+"""The CPython of the Blenders before 4.2 that the plain add-on is for."""
+
+
+@dataclass(frozen=True)
+class Made:
+    """One file of the release."""
+
+    data: bytes
+    seconds: float
+
+    @property
+    def sha256(self) -> str:
+        """Its hash, as SHA256SUMS gives it."""
+        return hashlib.sha256(self.data).hexdigest()
+
+
+@dataclass
+class Release:
+    """The files by their names, and what the checks found."""
+
+    version: str
+    modules: list[CheckedModule]
+    files: dict[str, Made] = field(default_factory=dict)
+    checks: list[str] = field(default_factory=list)
+
+    def add(self, name: str, make: Callable[[], bytes]) -> bytes:
+        """Make a file, and remember it and how long it took."""
+        start = time.perf_counter()
+        data = make()
+        self.files[name] = Made(data, time.perf_counter() - start)
+        return data
+
+
+def make_release(root: Path, modules: Files, pyserial: tuple[str, bytes]) -> Release:
+    """Make and check everything; PackagingError when something must not be handed out.
+
+    ``modules`` are the compiled modules by their file names, ``pyserial`` the name and content of
+    its wheel.
+    """
+    project = read_project(root)
+    private = (f"{root}/", f"{Path.home()}/")
+    release = Release(
+        project.version,
+        [checked_module(name, data, private) for name, data in sorted(modules.items())],
+    )
+    legacy = {name: data for name, data in modules.items() if python_tag(name) == LEGACY_PYTHON}
+    if not legacy:
+        raise PackagingError(f"no module for {LEGACY_PYTHON} was built")
+    _add_wheels(release, project, modules)
+    stem = f"sparse_mocap-{project.version}"
+    release.add(f"{stem}.zip", lambda: _extension(project, modules, pyserial))
+    release.add(
+        f"{stem}-legacy-linux-x64.zip", lambda: zipped(legacy_files(project, legacy, pyserial[1]))
+    )
+    release.add(f"{sdist_name(project)}.tar.gz", lambda: tarred(sdist_files(root, project)))
+    _check(release)
+    return release
+
+
+def _add_wheels(release: Release, project: Project, modules: Files) -> None:
+    """The wheel of each CPython, for pip."""
+    for name, data in sorted(modules.items()):
+        tag = python_tag(name)
+        files = wheel_files(project, {name: data}, tag, tag)
+        release.add(wheel_name(project, tag, tag), partial(zipped, files))
+
+
+def _extension(project: Project, modules: Files, pyserial: tuple[str, bytes]) -> bytes:
+    """The extension, with one wheel for all modules.
+
+    Blender refuses an extension whose wheels are all for other CPythons. This one it installs
+    everywhere: each CPython finds its own module, and where there is none the add-on says so.
+    """
+    wheel = zipped(wheel_files(project, modules, "py3", "none"))
+    return zipped(
+        extension_files(project, dict([(wheel_name(project, "py3", "none"), wheel), pyserial]))
+    )
+
+
+def _check(release: Release) -> None:
+    """Read again what was made, as whoever installs it would."""
+    zips = {n: made.data for n, made in release.files.items() if n.endswith((".whl", ".zip"))}
+    for name, data in sorted(_wheels_in(zips).items()):
+        release.checks.append(f"RECORD of {name} is right ({check_record(name, data)} files)")
+    check_same_modules(release.modules, zips)
+    held = sum(len(modules_in(unzipped(data))) for data in zips.values())
+    release.checks.append(
+        f"all {held} modules in {len(zips)} wheels and zips are the {len(release.modules)} built"
+    )
+
+
+def _wheels_in(files: Files) -> dict[str, bytes]:
+    """The wheels among these files and in the zips among them."""
+    found = {}
+    for name, data in files.items():
+        if name.endswith(".whl"):
+            found[name.rpartition("/")[2]] = data
+        elif name.endswith(".zip"):
+            found |= _wheels_in(unzipped(data))
+    return found
+
+
+def write_release(release: Release, output: Path) -> None:
+    """Write the files, their hashes, and a report, in place of what an earlier run left."""
+    output.mkdir(parents=True, exist_ok=True)
+    for path in output.iterdir():
+        if path.is_file():
+            path.unlink()
+    for name, made in release.files.items():
+        (output / name).write_bytes(made.data)
+    sums = [f"{made.sha256}  {name}\n" for name, made in sorted(release.files.items())]
+    (output / "SHA256SUMS").write_text("".join(sums), encoding="utf-8")
+    report = {
+        "version": release.version,
+        "modules": [dataclasses.asdict(module) for module in release.modules],
+        "files": {
+            name: {
+                "size": len(made.data),
+                "sha256": made.sha256,
+                "seconds": round(made.seconds, 2),
+            }
+            for name, made in sorted(release.files.items())
+        },
+        "checks": release.checks,
+    }
+    (output / "report.json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+
+
+def table(release: Release) -> Iterator[str]:
+    """The report for the terminal, line by line."""
+    for module in release.modules:
+        yield (
+            f"{module.name:<60} {_megabytes(module.size)}  glibc {module.newest_glibc}, "
+            f"exports {' '.join(module.exported)}, needs {' '.join(module.needed)}"
+        )
+    for name, made in sorted(release.files.items()):
+        yield f"{name:<60} {_megabytes(len(made.data))}  {made.seconds:.1f} s"
+    yield from release.checks
+
+
+def _megabytes(size: int) -> str:
+    return f"{size / 1e6:6.2f} MB"
