@@ -10,7 +10,10 @@ verb_blender() {
   version=${1:-3.4}
   [ $# -eq 0 ] || shift
   need_blender "$version"
-  need_release_file "$version"
+  case $version in
+    3.4) make_release_files --quick ;;
+    *) make_release_files ;;
+  esac
   cd "$ROOT"
   home=$ROOT/build/blender-$version
   mkdir -p "$home/config" "$home/scripts"
@@ -20,31 +23,28 @@ verb_blender() {
 
 # need_blender VERSION: that Blender, and in $runner and $root how commands reach it.
 need_blender() {
-  runner=in_root
   root=$CACHE/root-$1-2 # the last number counts the changes to make_root
   case $1 in
-    3.4) runner='' && basics blender libgl1-mesa-dri python3-numpy && return ;;
+    3.4)
+      runner=''
+      basics blender libgl1-mesa-dri python3-numpy
+      return
+      ;;
     4.3) suite=trixie ;;
     5.2) suite=sid ;;
     *) usage >&2 && exit 2 ;;
   esac
+  runner=in_root
   basics
   locked "$CACHE/lock" need_root "$root" "$suite"
 }
 
-# need_release_file VERSION: in $release_file what that Blender installs, made anew if the sources
-# changed.
-need_release_file() {
-  case $1 in
-    3.4) make_release_files --quick && set -- "$ROOT"/build/packages/*-legacy-linux-x64.zip ;;
-    *) make_release_files && set -- "$ROOT"/build/packages/sparse_mocap-*[0-9].zip ;;
-  esac
-  release_file=$1
-}
-
 install_addon() {
+  release_file=$(release_file_for "$1")
   case $1 in
-    3.4) run_blender -b --python-exit-code 1 --python "$ROOT/.dev/install_addon.py" -- "$release_file" ;;
+    3.4)
+      run_blender -b --python-exit-code 1 --python "$ROOT/.dev/install_addon.py" -- "$release_file"
+      ;;
     *) run_blender --command extension install-file -r user_default -e "$release_file" ;;
   esac
 }

@@ -30,6 +30,17 @@ pack_release_files() {
     --modules "$PACKAGE_BUILD/modules" --pyserial "$ZIG/pyserial" --output "$ROOT/build/packages"
 }
 
+# release_file_for VERSION: what that Blender, or module bpy, installs.
+release_file_for() {
+  for path in "$ROOT"/build/packages/*.zip; do
+    case $1:$path in
+      3.4:*-legacy-*) echo "$path" ;;
+      3.4:* | *-legacy-*) ;;
+      *) echo "$path" ;;
+    esac
+  done
+}
+
 need_zig() {
   need_environment 'Install zig' "$ZIG" /usr/bin/python3 "$ZIG_REQUIREMENTS"
   [ -d "$ZIG/pyserial" ] || QUIET='' step 'Fetch the wheel of pyserial' fetch_pyserial

@@ -40,10 +40,10 @@ test_python() {
 test_blenders() {
   blender_suite="Blender $(PATH=$SYSTEM_PATH blender --version | awk 'NR == 1 { print $2 }')"
   user=$(mktemp -d)
-  begin_suite "$blender_suite" in_blender "$ROOT"/build/packages/*-legacy-linux-x64.zip \
+  begin_suite "$blender_suite" in_blender "$(release_file_for 3.4)" \
     BLENDER_USER_RESOURCES="$user" BLENDER_USER_CONFIG="$user" BLENDER_USER_SCRIPTS="$user" \
     xvfb-run -a blender -b --factory-startup --python-exit-code 1 --python
-  extension=$(echo "$ROOT"/build/packages/sparse_mocap-*[0-9].zip)
+  extension=$(release_file_for 4.5)
   suite 'bpy 4.5' in_blender "$extension" "$BPY45/bin/python"
   if [ -n "$python313" ]; then
     suite 'bpy 5.2' in_blender "$extension" "$BPY52/bin/python"
@@ -61,7 +61,8 @@ in_blender() {
   package=$1
   shift
   exec timeout 900 env -u PYTHONPATH -u PYTHONNOUSERSITE PATH="$SYSTEM_PATH" \
-    SPARSE_MOCAP_PACKAGE="$package" "$@" "$ROOT/tests/blender/run.py"
+    SPARSE_MOCAP_PACKAGE="$package" SPARSE_MOCAP_TEST_PYTHON="$VENV/bin/python" \
+    "$@" "$ROOT/tests/blender/run.py"
 }
 
 # suite NAME COMMAND...: a test program and its line.

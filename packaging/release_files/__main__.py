@@ -20,7 +20,7 @@ def main() -> int:
     modules = {path.name: path.read_bytes() for path in options.modules.glob("_core*.so")}
     try:
         pyserial = _only_wheel(options.pyserial)
-        release = make_release(options.root, modules, pyserial)
+        release = make_release(options.root.resolve(), modules, pyserial)
     except PackagingError as error:
         print(f"{error}\nNothing was written.", file=sys.stderr)
         return 1

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -16,7 +17,8 @@ PHASES_S = (1.0, 2.0, 1.0, 5.0, 1.0, 5.0)
 LEAD_S = 3.0
 """From the first sample to the first phase: no movement begins before its own phase is near."""
 
-_MAKER = Path(__file__).resolve().parents[1] / "python" / "guided_body.py"
+_ROOT = Path(__file__).resolve().parents[2]
+_MAKER = _ROOT / "tests" / "python" / "guided_body.py"
 
 
 def wait_for_lead(session: Any) -> None:
@@ -30,9 +32,10 @@ def planted(folder: Path) -> tuple[Path, np.ndarray]:
     elbows_s = LEAD_S + sum(PHASES_S[:3]) - 0.5
     squats_s = elbows_s + sum(PHASES_S[3:5])
     times = [str(seconds) for seconds in (elbows_s, squats_s, squats_s + PHASES_S[5] + 3.0)]
+    python = os.environ.get("SPARSE_MOCAP_TEST_PYTHON") or shutil.which("python") or "python3"
     done = subprocess.run(
-        [shutil.which("python") or "python3", _MAKER, take, turns, *times],
-        capture_output=True, text=True, check=False,
+        [python, _MAKER, take, turns, *times],
+        env=os.environ | {"PYTHONPATH": str(_ROOT / "bindings")}, capture_output=True, text=True, check=False,
     )  # fmt: skip
     if "No module named 'scipy'" in done.stderr:
         from support import Skipped

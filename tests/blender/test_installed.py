@@ -8,7 +8,7 @@ import zipfile
 from pathlib import Path
 
 import installed
-from support import Skipped, choose_files, is_registered, loaded_modules, reconstruct
+from support import Skipped, addon, choose_files, is_registered, loaded_modules, reconstruct
 
 
 def _files() -> list[str]:
@@ -40,8 +40,9 @@ def _older(folder: Path) -> Path:
     return path
 
 
-def _version() -> tuple[int, ...]:
-    return tuple(installed.module().bl_info["version"])
+def _version() -> str:
+    folder = Path(installed.module().__file__).parent
+    return addon("session.installation_paths").addon_version(folder)
 
 
 def test_installed_and_removed_twenty_times_leaves_nothing():
@@ -84,6 +85,4 @@ def test_an_upgrade_replaces_all_files(tmp_path):
     finally:
         installed.install()
     installed.register()
-    manifest = Path(installed.module().__file__).with_name("blender_manifest.toml")
-    assert not manifest.is_file() or '"0.0.1"' not in manifest.read_text(encoding="utf-8")
-    assert _version() != (0, 0, 1)
+    assert _version() not in ("", "0.0.1")
