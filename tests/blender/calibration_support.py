@@ -35,7 +35,8 @@ def planted(folder: Path) -> tuple[Path, np.ndarray]:
     python = os.environ.get("SPARSE_MOCAP_TEST_PYTHON") or shutil.which("python") or "python3"
     done = subprocess.run(
         [python, _MAKER, take, turns, *times],
-        env=os.environ | {"PYTHONPATH": str(_ROOT / "bindings")}, capture_output=True, text=True, check=False,
+        env=os.environ | {"PYTHONPATH": str(_ROOT / "bindings")},
+        capture_output=True, text=True, check=False,
     )  # fmt: skip
     if "No module named 'scipy'" in done.stderr:
         from support import Skipped

@@ -33,6 +33,9 @@ def _installed(folder: Path, *, is_extension: bool = False) -> tuple[Path, Path]
     ignored = shutil.ignore_patterns("__pycache__", "_core.*.so", "vendor")
     shutil.copytree(Path(installed.module().__file__).parent, addon, ignore=ignored)
     shutil.copytree(Path(sparse_mocap.__file__).parent, vendor, ignore=ignored)
+    manifest = addon / "blender_manifest.toml"
+    if manifest.is_file():  # Blender would put wheels in their place again
+        manifest.write_text(re.sub(r"(?s)\nwheels = \[.*?\]", "", manifest.read_text()))
     compiled = vendor / Path(sparse_mocap._core.__file__).name
     shutil.copy(sparse_mocap._core.__file__, compiled)
     return addon, compiled
