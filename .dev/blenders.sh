@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# shellcheck shell=sh disable=SC2016,SC2153,SC2154 # some $ are for inner programs; ROOT is ./dev's
+# shellcheck shell=sh disable=SC2016,SC2086,SC2153,SC2154 # some $ are for inner programs; ROOT is ./dev's
 #
 # Read by ./dev: Blenders with the release file installed; those of a later Debian each in a Debian
 # of its own.
@@ -19,6 +19,34 @@ verb_blender() {
   mkdir -p "$home/config" "$home/scripts"
   QUIET='' step "Install the add-on in Blender $version" install_addon "$version"
   run_blender "$@"
+}
+
+# verb_blenders: Blender's tests on the release file in every Blender, with windows.
+verb_blenders() {
+  if [ -z "${IN_XVFB:-}" ]; then
+    basics $BLENDER_PACKAGES
+    exec xvfb-run -a -s '-screen 0 1280x1024x24' env IN_XVFB=1 "$0" blenders "$@"
+  fi
+  python313=$(find_python313)
+  locked "$CACHE/lock" need_bpy
+  make_release_files
+  SYSTEM_PATH=$PATH
+  for version in ${*:-3.4 4.3 5.2}; do
+    need_blender "$version"
+    suite "Blender $version" test_blender "$version"
+  done
+  [ $# -ne 0 ] || test_bpy
+  echo "$passed passed, $failed failed"
+  [ "$failed" -eq 0 ]
+}
+
+# test_blender VERSION: in a user's folder of its own.
+test_blender() {
+  home=$(mktemp -d)
+  cd "$ROOT"
+  $runner timeout 1200 env HOME="$HOME" DISPLAY="$DISPLAY" XAUTHORITY="$XAUTHORITY" \
+    BLENDER_USER_RESOURCES="$home" BLENDER_USER_CONFIG="$home" BLENDER_USER_SCRIPTS="$home" \
+    SPARSE_MOCAP_PACKAGE="$(release_file_for "$1")" blender -b --factory-startup --python-exit-code 1 --python "$ROOT/tests/blender/run.py"
 }
 
 # need_blender VERSION: that Blender, and in $runner and $root how commands reach it.

@@ -43,15 +43,18 @@ test_blenders() {
   begin_suite "$blender_suite" in_blender "$(release_file_for 3.4)" \
     BLENDER_USER_RESOURCES="$user" BLENDER_USER_CONFIG="$user" BLENDER_USER_SCRIPTS="$user" \
     xvfb-run -a blender -b --factory-startup --python-exit-code 1 --python
-  extension=$(release_file_for 4.5)
-  suite 'bpy 4.5' in_blender "$extension" "$BPY45/bin/python"
+  test_bpy
+  end_suite "$blender_suite"
+  rm -rf "$user"
+}
+
+test_bpy() {
+  suite 'bpy 4.5' in_blender "$(release_file_for 4.5)" "$BPY45/bin/python"
   if [ -n "$python313" ]; then
-    suite 'bpy 5.2' in_blender "$extension" "$BPY52/bin/python"
+    suite 'bpy 5.2' in_blender "$(release_file_for 5.2)" "$BPY52/bin/python"
   else
     echo 'bpy 5.2 ... left out: no CPython 3.13 here (PYTHON313 may name one)'
   fi
-  end_suite "$blender_suite"
-  rm -rf "$user"
 }
 
 # in_blender PACKAGE [NAME=VALUE...] COMMAND...: COMMAND runs Blender's tests on what it installs

@@ -2,13 +2,15 @@
 """The demonstration's picture and .blend, made as the demonstration makes them."""
 
 import subprocess
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
 import bpy
 import numpy as np
 from support import Skipped, expected_performance, library
 
-SCRIPT = Path(__file__).parents[2] / "bindings/sparse_mocap_demo/render_scene.py"
+BINDINGS = Path(__file__).parents[2] / "bindings"
+SCRIPT = BINDINGS / "sparse_mocap_demo" / "render_scene.py"
 
 
 def _make(folder: Path, *options: str) -> subprocess.CompletedProcess:
@@ -16,6 +18,10 @@ def _make(folder: Path, *options: str) -> subprocess.CompletedProcess:
 
     if not bpy.app.binary_path:
         raise Skipped("a bpy module has no command line")
+    if not (BINDINGS / "sparse_mocap" / f"_core{EXTENSION_SUFFIXES[0]}").is_file():
+        raise Skipped(
+            "the sources, which the demonstration runs from, have no core for this Python"
+        )
     reconstructed = folder / "reconstructed.bvh"
     sparse_mocap.write_bvh(reconstructed, expected_performance().motion)
     performed = next(library().motions.iterdir())
