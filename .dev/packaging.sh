@@ -110,9 +110,10 @@ build_package() {
   # The compiler that ccache sees is a script that never changes.
   export CCACHE_COMPILERCHECK="string:$ZIG_REQUIREMENTS"
   make_prefix "$PACKAGE_BUILD/prefix"
+  # zig adds -g by itself: a quarter more work, and the names of folders, for what -s drops again.
   set -- -DSPARSE_MOCAP_PREFIX="$PACKAGE_BUILD/prefix" \
     -DSPARSE_MOCAP_XXHASH_INCLUDE_DIR="$PACKAGE_BUILD/prefix/include" \
-    -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$ROOT=. -ffile-prefix-map=$CACHE=." \
+    -DCMAKE_CXX_FLAGS="-g0 -ffile-prefix-map=$ROOT=. -ffile-prefix-map=$CACHE=." \
     -DPython_EXECUTABLE="$VENV/bin/python" \
     -DPython_INCLUDE_DIR="$PACKAGE_BUILD/prefix/include/python3.11" \
     -Dpybind11_DIR="$("$VENV/bin/python" -m pybind11 --cmakedir)"
@@ -134,9 +135,9 @@ build_package() {
 make_prefix() {
   rm -rf "$1"
   mkdir -p "$1/include/x86_64-linux-gnu"
-  cp -RL /usr/include/eigen3/. /usr/include/nlohmann /usr/include/nanoflann.hpp \
+  cp -RLp /usr/include/eigen3/. /usr/include/nlohmann /usr/include/nanoflann.hpp \
     /usr/include/xxhash.h /usr/include/python3.11 "$1/include/"
-  cp -RL /usr/include/x86_64-linux-gnu/python3.11 "$1/include/x86_64-linux-gnu/"
+  cp -RLp /usr/include/x86_64-linux-gnu/python3.11 "$1/include/x86_64-linux-gnu/"
   write_cmake_package "$1" Eigen3 Eigen3::Eigen libeigen3-dev
   write_cmake_package "$1" nanoflann nanoflann::nanoflann libnanoflann-dev
   write_cmake_package "$1" nlohmann_json nlohmann_json::nlohmann_json nlohmann-json3-dev

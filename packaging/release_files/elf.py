@@ -11,7 +11,6 @@ X86_64 = 62
 SYMBOLS, DYNAMIC, EXPORT_SYMBOLS, NEEDED_VERSIONS = 2, 6, 11, 0x6FFFFFFE
 LIBRARY, LIBRARY_FOLDERS = 1, (15, 29)  # DT_NEEDED; DT_RPATH and DT_RUNPATH
 LOCAL = 0
-HIDDEN = (1, 2)  # STV_INTERNAL, STV_HIDDEN
 
 
 @dataclass(frozen=True)
@@ -88,8 +87,8 @@ def _sections(data: bytes) -> list[_Section]:
 
 
 def _exported(symbols: bytes, names: bytes) -> Iterator[str]:
-    for name, info, other, section, _, _ in struct.iter_unpack("<IBBHQQ", symbols):
-        if section and info >> 4 != LOCAL and other & 3 not in HIDDEN:
+    for name, info, _, section, _, _ in struct.iter_unpack("<IBBHQQ", symbols):
+        if section and info >> 4 != LOCAL:
             yield _text(names, name)
 
 

@@ -91,7 +91,7 @@ def readelf_exports(text: str) -> list[str]:
         columns = line.split()
         if len(columns) < 8 or not columns[0].endswith(":") or columns[6] == "UND":
             continue
-        if columns[4] in ("GLOBAL", "WEAK", "UNIQUE") and columns[5] in ("DEFAULT", "PROTECTED"):
+        if columns[4] in ("GLOBAL", "WEAK", "UNIQUE"):
             names.append(columns[7].split("@")[0])
     return names
 
