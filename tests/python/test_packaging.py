@@ -263,7 +263,7 @@ def test_the_plain_addon_does_not_hide_the_package(made: release.Release, tmp_pa
         zipped.extractall(tmp_path)
     program = (
         "import importlib\nfrom sparse_mocap_addon.session import core\n"
-        "print(core._with_vendor(('serial', 'sparse_mocap')).__file__)"
+        "print(core._imported_all(('serial', 'sparse_mocap')).__file__)"
     )
     environment = {name: text for name, text in os.environ.items() if name != "PYTHONPATH"}
     run = subprocess.run(
