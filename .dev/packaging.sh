@@ -2,7 +2,7 @@
 # shellcheck shell=sh disable=SC2016,SC2086,SC2153,SC2154,SC2164 # words split; set -e is ./dev's
 #
 # Read by ./dev: the files that are handed out, for Linux x86-64 since glibc 2.28. zig compiles the
-# core once and the bindings for each CPython; the Python package in packaging/ makes the archives.
+# core once and the bindings for each CPython; the Python package in .dev/packaging/ makes the archives.
 
 ZIG_REQUIREMENTS='ziglang==0.17.1'
 ZIG=$(environment zig "$ZIG_REQUIREMENTS")
@@ -26,7 +26,7 @@ make_release_files() {
 }
 
 pack_release_files() {
-  env PYTHONPATH="$ROOT/packaging" PYTHONNOUSERSITE=1 "$VENV/bin/python" -m release_files "$ROOT" \
+  env PYTHONPATH="$ROOT/.dev/packaging" PYTHONNOUSERSITE=1 "$VENV/bin/python" -m release_files "$ROOT" \
     --modules "$PACKAGE_BUILD/modules" --pyserial "$ZIG/pyserial" --output "$ROOT/build/packages"
 }
 

@@ -40,7 +40,7 @@ def read_project(root: Path) -> Project:
         addon=folder_files(root / "blender_addon", (".py",)),
         licences={
             "LICENSE": (root / "LICENSE").read_bytes(),
-            **under("licences", folder_files(root / "packaging" / "licences", (".txt",))),
+            **under("licences", folder_files(root / ".dev" / "packaging" / "licences", (".txt",))),
         },
     )
 
