@@ -44,6 +44,7 @@ verb_blenders() {
 test_blender() {
   home=$(mktemp -d)
   cd "$ROOT"
+  [ -n "$runner" ] || export SPARSE_MOCAP_TEST_PYTHON="$VENV/bin/python" # for this Debian alone
   $runner timeout 1200 env HOME="$HOME" DISPLAY="$DISPLAY" XAUTHORITY="$XAUTHORITY" \
     BLENDER_USER_RESOURCES="$home" BLENDER_USER_CONFIG="$home" BLENDER_USER_SCRIPTS="$home" \
     SPARSE_MOCAP_PACKAGE="$(release_file_for "$1")" blender -b --factory-startup --python-exit-code 1 --python "$ROOT/tests/blender/run.py"

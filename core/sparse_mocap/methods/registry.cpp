@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/methods/registry.hpp"
 
-#include <utility>
-
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/database/model.hpp"
 #include "sparse_mocap/readings/channel_names.hpp"
@@ -79,22 +77,22 @@ const MethodEntry& find_method(std::string_view name) {
 
 std::unique_ptr<LiveMethod> make_live_method(const MethodEntry& method,
                                              const MethodSettings& settings,
-                                             MethodContext context) {
+                                             const MethodContext& context) {
   if (method.make_live == nullptr)
     throw ConfigError("method " + method.info.name +
                       " does not work live: record a take and reconstruct it in best quality");
   check(method.info, context);
-  return method.make_live(settings, std::move(context));
+  return method.make_live(settings, context);
 }
 
 std::unique_ptr<WholeTakeMethod> make_whole_take_method(const MethodEntry& method,
                                                         const MethodSettings& settings,
-                                                        MethodContext context) {
+                                                        const MethodContext& context) {
   if (method.make_whole_take == nullptr)
     throw ConfigError("method " + method.info.name +
                       " has no best quality: it works live only, frame by frame");
   check(method.info, context);
-  return method.make_whole_take(settings, std::move(context));
+  return method.make_whole_take(settings, context);
 }
 
 Model train_model(const MethodEntry& method, const MethodSettings& settings,

@@ -20,10 +20,11 @@ const MethodEntry& find_method(std::string_view name);
 // a method that does not work this way, a database, model or body that it needs, sensors that are
 // too few, too many or without a channel that it needs, settings that cannot be.
 std::unique_ptr<LiveMethod> make_live_method(const MethodEntry& method,
-                                             const MethodSettings& settings, MethodContext context);
+                                             const MethodSettings& settings,
+                                             const MethodContext& context);
 std::unique_ptr<WholeTakeMethod> make_whole_take_method(const MethodEntry& method,
                                                         const MethodSettings& settings,
-                                                        MethodContext context);
+                                                        const MethodContext& context);
 
 // What a method learns from clips. Throws ConfigError for methods that learn nothing.
 Model train_model(const MethodEntry& method, const MethodSettings& settings,

@@ -22,11 +22,11 @@ MethodEntry method() {
   entry.info.most_sensors = static_cast<int>(all_sites().size());
   entry.info.needs_database = true;
   entry.make_live = [](const MethodSettings& settings,
-                       MethodContext context) -> std::unique_ptr<LiveMethod> {
+                       const MethodContext& context) -> std::unique_ptr<LiveMethod> {
     return std::make_unique<LiveReconstructor>(with_settings(live_config(), settings), context);
   };
   entry.make_whole_take = [](const MethodSettings& settings,
-                             MethodContext context) -> std::unique_ptr<WholeTakeMethod> {
+                             const MethodContext& context) -> std::unique_ptr<WholeTakeMethod> {
     return std::make_unique<WholeTakeReconstructor>(with_settings(whole_take_config(), settings),
                                                     context);
   };

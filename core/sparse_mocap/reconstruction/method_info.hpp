@@ -87,9 +87,9 @@ struct TrainingClip {
 // that way. Factories throw ConfigError; trainers also Cancelled.
 struct MethodEntry {
   MethodInfo info;
-  std::unique_ptr<LiveMethod> (*make_live)(const MethodSettings&, MethodContext) = nullptr;
+  std::unique_ptr<LiveMethod> (*make_live)(const MethodSettings&, const MethodContext&) = nullptr;
   std::unique_ptr<WholeTakeMethod> (*make_whole_take)(const MethodSettings&,
-                                                      MethodContext) = nullptr;
+                                                      const MethodContext&) = nullptr;
   Model (*train)(const MethodSettings&, const std::vector<TrainingClip>&,
                  const Progress&) = nullptr;
 };

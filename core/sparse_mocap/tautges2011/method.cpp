@@ -45,7 +45,7 @@ MethodEntry method() {
   entry.info.needs_database = true;
   entry.info.experiments = experiments();
   entry.make_live = [](const MethodSettings& settings,
-                       MethodContext context) -> std::unique_ptr<LiveMethod> {
+                       const MethodContext& context) -> std::unique_ptr<LiveMethod> {
     return std::make_unique<Reconstructor>(config_of(settings), context);
   };
   return entry;

@@ -24,10 +24,10 @@ struct HeldPose : WholeTakeMethod {
 const auto kOptions = OptionTable<HeldPose>().number("height_m", &HeldPose::height_m, 0.0, 3.0,
                                                      "height of the pelvis above the floor, m");
 
-std::unique_ptr<WholeTakeMethod> make(const MethodSettings& settings, MethodContext context) {
+std::unique_ptr<WholeTakeMethod> make(const MethodSettings& settings, const MethodContext& given) {
   auto method = std::make_unique<HeldPose>();
   kOptions.apply(settings.options, *method);
-  const auto rotations = context.model->matrix<double>("rotations", kNumStandardJoints, 4);
+  const auto rotations = given.model->matrix<double>("rotations", kNumStandardJoints, 4);
   for (const auto& q : rotations.rowwise())
     method->pose_.rotations.emplace_back(q[0], q[1], q[2], q[3]);
   return method;
