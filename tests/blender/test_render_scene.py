@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The demonstration's picture and .blend, made as the demonstration makes them."""
 
+import os
 import subprocess
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
@@ -33,8 +34,11 @@ def _make(folder: Path, *options: str) -> subprocess.CompletedProcess:
         "--picture": folder / "figures.png",
     }
     arguments = [str(part) for item in files.items() for part in item]
+    names = ("RESOURCES", "SCRIPTS", "CONFIG")  # nothing is installed there
+    own = {f"BLENDER_USER_{name}": str(folder / "user") for name in names}
     return subprocess.run(
         [*command, "--python", SCRIPT, "--", *arguments, "--samples", "1", *options],
+        env=os.environ | own,
         capture_output=True,
         text=True,
         timeout=200,
