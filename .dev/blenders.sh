@@ -43,11 +43,13 @@ verb_blenders() {
 # test_blender VERSION: in a user's folder of its own.
 test_blender() {
   home=$(mktemp -d)
+  trap 'rm -rf "$home"' EXIT
   cd "$ROOT"
   [ -n "$runner" ] || export SPARSE_MOCAP_TEST_PYTHON="$VENV/bin/python" # for this Debian alone
   $runner timeout 1200 env HOME="$HOME" DISPLAY="$DISPLAY" XAUTHORITY="$XAUTHORITY" \
     BLENDER_USER_RESOURCES="$home" BLENDER_USER_CONFIG="$home" BLENDER_USER_SCRIPTS="$home" \
-    SPARSE_MOCAP_PACKAGE="$(release_file_for "$1")" blender -b --factory-startup --python-exit-code 1 --python "$ROOT/tests/blender/run.py"
+    SPARSE_MOCAP_PACKAGE="$(release_file_for "$1")" \
+    blender -b --factory-startup --python-exit-code 1 --python "$ROOT/tests/blender/run.py"
 }
 
 # need_blender VERSION: that Blender, and in $runner and $root how commands reach it.
@@ -84,7 +86,7 @@ run_blender() {
     BLENDER_USER_SCRIPTS="$home/scripts" blender "$@"
 }
 
-# need_root FOLDER SUITE: a Debian of its own that holds a Blender and the headers of its CPython.
+# need_root FOLDER SUITE: a Debian of its own that holds a Blender.
 need_root() {
   need_packages debootstrap
   [ -d "$1" ] || QUIET='' step "Install Blender in a root of Debian $2" make_root "$1" "$2"
@@ -99,10 +101,6 @@ make_root() {
   # python3-cattr and -requests: Blender's extensions import them, unstable's package forgets them.
   # libgl1: no package asks for it, and Blender opens no window without it.
   apt_install in_root blender python3-numpy libgl1 libgl1-mesa-dri python3-cattr python3-requests
-  in_root sh -c 'set -e; mkdir /headers; cd /headers
-    python3 -c "import sys; print(*sys.version_info[:2], sep=chr(46))" >version
-    apt-get -o APT::Sandbox::User=root download "libpython$(cat version)-dev"
-    dpkg-deb -x ./*.deb .'
   as_root mv "$root" "$1"
 }
 

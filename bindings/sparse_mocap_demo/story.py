@@ -57,7 +57,7 @@ def play(
     assert solved.latency_s is not None
     click.echo(
         f"Reconstructed {len(solved.readings)} frames from four simulated accelerometers without"
-        f" noise, in live quality, {1000.0 * solved.latency_s:.0f} ms behind"
+        f" noise, in live quality, {1000.0 * solved.latency_s:.0f} ms delay"
     )
     _compare(database, performance, solved, output / "errors.png")
     _say("take", output / "take.csv")
