@@ -20,7 +20,7 @@ def test_every_exporters_bvh_is_where_it_should_be():
         render.fps, render.fps_base = RATES[index % len(RATES)]
         unit, unit_m = ("DM", 0.1) if "makehuman" in path.parent.name else ("CM", 0.01)
         _check_bvh(path, unit_m, frames=None, unit=unit)
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_empty=True)
         render = bpy.context.scene.render
 
 
