@@ -245,7 +245,8 @@ def _compiled() -> Any:
         return importlib.import_module("._core", __name__)
     except ImportError as error:
         version = ".".join(map(str, sys.version_info[:3]))
-        built = sorted(path.name for path in Path(__file__).parent.glob("_core*.so"))
+        files = Path(__file__).parent.glob("_core*")
+        built = sorted(path.name for path in files if path.suffix in (".so", ".pyd"))
         found = f"the folder holds {', '.join(built)}" if built else "none is built"
         raise ImportError(
             f"sparse_mocap has no compiled core for this Python, CPython {version} ({found}): "

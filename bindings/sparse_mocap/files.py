@@ -5,11 +5,15 @@ from __future__ import annotations
 
 import os
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 __all__ = ["replaced", "write_text"]
+
+_DENIED_FOR_S = 1.0
+"""How long a replacement is tried again. Windows refuses to replace a file that somebody reads."""
 
 
 @contextmanager
@@ -46,10 +50,18 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 
 def _replace(temporary: Path, target: Path) -> None:
     mode = target.stat().st_mode if target.exists() else 0o666 & ~_umask()
-    temporary.chmod(mode & 0o777)
-    with temporary.open("rb") as file:
+    with temporary.open("r+b") as file:  # Windows syncs no file that is open for reading alone
         os.fsync(file.fileno())
-    os.replace(temporary, target)
+    temporary.chmod(mode & 0o777)
+    end = time.perf_counter() + _DENIED_FOR_S
+    while True:
+        try:
+            os.replace(temporary, target)
+            return
+        except PermissionError:
+            if time.perf_counter() >= end:
+                raise
+        time.sleep(0.01)
 
 
 def _umask() -> int:

@@ -54,7 +54,7 @@ def _follow(
 ) -> None:
     total = round(1000 * duration_s)
     while player.is_alive():
-        played_s = (time.monotonic_ns() - emulator.begin_ns) * 1e-9 * _SPEED
+        played_s = (time.perf_counter_ns() - emulator.begin_ns) * 1e-9 * _SPEED
         if progress(min(round(1000 * played_s), total), total, "") is False:
             raise Cancelled("cancelled")
         time.sleep(0.05)

@@ -110,8 +110,8 @@ def _tick_or_end() -> float | None:
     if session is None:
         return None
     pose = tick()
-    if pose is not None or time.monotonic() >= _next_panel_s or not session.is_running:
-        _next_panel_s = time.monotonic() + _PANEL_S
+    if pose is not None or time.perf_counter() >= _next_panel_s or not session.is_running:
+        _next_panel_s = time.perf_counter() + _PANEL_S
         compat.redraw_views(bpy.context)
     return TICK_S if session.is_running else None
 

@@ -67,7 +67,7 @@ def calibrating_job(
         total_s = sum(phase.seconds for phase in phases)
         answer_of(session.record(total_s + ANSWER_WITHIN_S), ANSWER_WITHIN_S)
         try:
-            begin_s = time.monotonic()
+            begin_s = time.perf_counter()
             _guide(phases, begin_s, progress)
         finally:
             logs, number = answer_of(session.stop_recording(), ANSWER_WITHIN_S)
@@ -88,7 +88,7 @@ def _guide(phases: tuple[Phase, ...], begin_s: float, progress: Progress) -> Non
     end_s = begin_s
     for phase in phases:
         end_s += phase.seconds
-        while (now_s := time.monotonic()) < end_s:
+        while (now_s := time.perf_counter()) < end_s:
             what = f"{phase.text}: {end_s - now_s:.0f}"
             if not progress(min(round(1e3 * (now_s - begin_s)), total_ms), total_ms, what):
                 raise Cancelled("Cancelled")

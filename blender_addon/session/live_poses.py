@@ -82,7 +82,7 @@ class LivePoses:
         """Add samples, and return the newest pose that is due, None when none is."""
         self._reconstructor.push(samples)
         pose = None
-        for estimate in self._reconstructor.advance(time.monotonic()):
+        for estimate in self._reconstructor.advance(time.perf_counter()):
             pose = self._pose(estimate)
         return pose
 
@@ -97,7 +97,7 @@ class LivePoses:
     def _pose(self, estimate: Any) -> Pose:
         self._num_poses += 1
         self._match.add(estimate)
-        self.latencies_s.append(time.monotonic() - estimate.time_s)
+        self.latencies_s.append(time.perf_counter() - estimate.time_s)
         return Pose(
             self._num_poses,
             np.array(estimate.rotations),

@@ -62,7 +62,7 @@ class PortScanner:
 
     def latest(self) -> ScanResult:
         """The newest result, without waiting; starts another scan when it is old."""
-        if time.monotonic() - self._scanned_s > SCAN_INTERVAL_S:
+        if time.perf_counter() - self._scanned_s > SCAN_INTERVAL_S:
             self.scan()
         return self.result
 
@@ -70,7 +70,7 @@ class PortScanner:
         """Start a scan on a thread, unless one is running."""
         if self.is_scanning:
             return
-        self._scanned_s = time.monotonic()
+        self._scanned_s = time.perf_counter()
         self._thread = threading.Thread(target=self._scan, name="Sparse Mocap: ports", daemon=True)
         self._thread.start()
 

@@ -44,11 +44,11 @@ class Slices(Generic[T]):
 
     def advance(self, seconds: float) -> bool:
         """Work for this long; returns whether all steps are done. Raises what a step raises."""
-        end = time.monotonic() + seconds
+        end = time.perf_counter() + seconds
         try:
             while True:
                 self.fraction = next(self._steps)
-                if time.monotonic() >= end:
+                if time.perf_counter() >= end:
                     return False
         except StopIteration as done:
             self.result = done.value

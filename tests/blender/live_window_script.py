@@ -50,9 +50,9 @@ def sidebar() -> bpy.types.Region:
 
 
 def until(is_done: Callable[[], object]) -> Steps:
-    begin = time.monotonic()
+    begin = time.perf_counter()
     while not is_done():
-        assert time.monotonic() - begin < TIMEOUT_S, "nothing happened"
+        assert time.perf_counter() - begin < TIMEOUT_S, "nothing happened"
         yield 0.05
 
 
@@ -77,7 +77,7 @@ def watch_latency() -> None:
 
     def timed(armature: bpy.types.Object, pose: object) -> None:
         show(armature, pose)
-        shown_late_s.append(time.monotonic() - pose.time_s)
+        shown_late_s.append(time.perf_counter() - pose.time_s)
 
     live_scene._show = timed
 
@@ -151,9 +151,9 @@ def play() -> Steps:
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
     call(bpy.ops.ed.undo_push)
-    begin = time.monotonic()
+    begin = time.perf_counter()
     assert call(bpy.ops.sparse_mocap.connect_sensors) == {"FINISHED"}
-    assert time.monotonic() - begin < 1.0, "connecting held the window"
+    assert time.perf_counter() - begin < 1.0, "connecting held the window"
     session = installed.module("session.live").current()
     yield from until(lambda: session.state.error or len(session.state.sensors) == len(SITES))
     assert session.state.error == "", session.state.error

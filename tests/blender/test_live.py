@@ -31,7 +31,7 @@ def _ticked(num_poses: int) -> list[tuple[object, float]]:
     def has_enough() -> bool:
         pose = scene.tick()
         if pose is not None:
-            shown.append((pose, time.monotonic() - pose.time_s))
+            shown.append((pose, time.perf_counter() - pose.time_s))
         return len(shown) >= num_poses
 
     until(has_enough)

@@ -63,7 +63,7 @@ def emulate(seconds: float, link: str, faults: Faults | None = None) -> None:
     )  # fmt: skip
     print(*emulator.plug_in(), flush=True)
     returns: list[int] = []
-    emulator.run(replugged=lambda paths: returns.append(time.monotonic_ns()))
+    emulator.run(replugged=lambda paths: returns.append(time.perf_counter_ns()))
     emulator.close()
     print(json.dumps([emulator.begin_ns, emulator.num_overrun, returns]), flush=True)
 
@@ -117,15 +117,15 @@ def steady(folder: Path, seconds: float) -> dict[str, Any]:
     client = start_capture(config_of(device.path), folder / "c")
     pid, num_read = client.session.pid, 0
     chance = random.Random(1)
-    next_stall = time.monotonic() + 5.0
+    next_stall = time.perf_counter() + 5.0
     used: dict[str, float] = {}
     expected = round(seconds * RATE_HZ) * NUM_SENSORS
     while device.process.poll() is None and num_read < expected:
         num_read += len(client.read())
         used = {"memory_mb": memory_mb(pid), "cpu_s": cpu_s(pid)}
-        if time.monotonic() > next_stall:
+        if time.perf_counter() > next_stall:
             time.sleep(5.0)
-            next_stall = time.monotonic() + chance.uniform(5.0, 60.0)
+            next_stall = time.perf_counter() + chance.uniform(5.0, 60.0)
             position, session = client.position, client.session
             client.close()
             client = CaptureClient(session, position)

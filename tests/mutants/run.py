@@ -136,7 +136,7 @@ def verdict(folder: Path, tests: list[str]) -> Verdict:
                "bindings/pyproject.toml", "--rootdir", ".", *tests]  # fmt: skip
     environment = os.environ | {"PYTHONPATH": f"{folder}/bindings", "PYTHONDONTWRITEBYTECODE": "1"}
     log = folder / "pytest.log"
-    begin = time.monotonic()
+    begin = time.perf_counter()
     try:
         with log.open("w", encoding="utf-8") as output:
             code = subprocess.run(
@@ -150,7 +150,7 @@ def verdict(folder: Path, tests: list[str]) -> Verdict:
             ).returncode
     except subprocess.TimeoutExpired:
         return Verdict(fault=f"did not end within {TEST_TIMEOUT_S:.0f} s, see {log}")
-    seconds = time.monotonic() - begin
+    seconds = time.perf_counter() - begin
     failed = re.findall(r"^FAILED \S*?(\w+\.py::\S+)", log.read_text("utf-8"), re.MULTILINE)
     # Only a test that fails kills: neither an error of a fixture nor a crash is one.
     is_sound = code == (1 if failed else 0)
@@ -159,12 +159,12 @@ def verdict(folder: Path, tests: list[str]) -> Verdict:
 
 def check_unbroken(chosen: list[Mutant], options: list[str]) -> None:
     """Raises Broken unless all the guarding tests pass on the sources as they are."""
-    begin = time.monotonic()
+    begin = time.perf_counter()
     shutil.rmtree(PACKED, ignore_errors=True)
     update_copy()
     configure(options)
     build()
-    built = time.monotonic() - begin
+    built = time.perf_counter() - begin
     found = verdict(packed("none"), sorted({test for mutant in chosen for test in mutant.tests}))
     if found.failed or found.fault:
         raise Broken(f"the tests fail without a mutant: {found.fault or ', '.join(found.failed)}")
@@ -186,7 +186,7 @@ def judge(chosen: list[Mutant]) -> int:
 
     with ThreadPoolExecutor(1) as tester:
         for mutant in chosen:
-            begin = time.monotonic()
+            begin = time.perf_counter()
             mutant.apply()
             try:
                 build()
@@ -195,7 +195,7 @@ def judge(chosen: list[Mutant]) -> int:
                 job = tester.submit(Verdict, fault=str(fault))
             finally:
                 mutant.undo()
-            waiting.append((mutant, time.monotonic() - begin, job))
+            waiting.append((mutant, time.perf_counter() - begin, job))
             while waiting and waiting[0][2].done():
                 tell()
         while waiting:
@@ -221,7 +221,7 @@ def main() -> int:
     parser.add_argument("names", nargs="*", metavar="NAME", help="only these mutants")
     parser.add_argument("--cmake", action="append", default=[], help=argparse.SUPPRESS)
     options = parser.parse_args()
-    begin = time.monotonic()
+    begin = time.perf_counter()
     known = {mutant.name: mutant for mutant in mutants()}
     unknown = [name for name in options.names if name not in known]
     problems = [f"no mutant is called {name}" for name in unknown]
@@ -236,7 +236,7 @@ def main() -> int:
         print(fault, file=sys.stderr)
         return 1
     survivors = judge(chosen)
-    minutes = (time.monotonic() - begin) / 60.0
+    minutes = (time.perf_counter() - begin) / 60.0
     print(f"{len(chosen) - survivors} of {len(chosen)} killed in {minutes:.1f} minutes")
     return 1 if survivors else 0
 

@@ -9,8 +9,11 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
+import click
 import pytest
+from sparse_mocap.cli import app
 
 Command = Callable[..., subprocess.CompletedProcess[str]]
 
@@ -184,3 +187,18 @@ def test_ctrl_c_in_a_build_leaves_no_file(library: Path, tmp_path: Path) -> None
     assert done.returncode == 128 + signal.SIGINT
     assert done.stderr.splitlines() == ["sparse-mocap: cancelled"]
     assert list(tmp_path.iterdir()) == []
+
+
+def test_patterns_are_not_replaced_by_names_of_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """On Windows, click replaces * by the names of what is in the folder unless told otherwise."""
+    windows = SimpleNamespace(**{**vars(os), "name": "nt"})
+    monkeypatch.setattr(click.core, "os", windows)
+    for name in ("a.txt", "b.txt"):
+        (tmp_path / name).write_bytes(b"")
+    monkeypatch.chdir(tmp_path)
+    words = ["database", "build", ".", "-o", "x.smdb", "--exclude", "*.txt"]
+    monkeypatch.setattr(sys, "argv", ["sparse-mocap", *words])
+    assert app.run() == 1
+    assert "holds no .bvh or .amc file" in capsys.readouterr().err

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import os
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +36,46 @@ def test_a_write_replaces_and_keeps_permissions(tmp_path: Path) -> None:
     assert path.read_bytes() == b"new\n"
     assert path.stat().st_mode & 0o777 == 0o640
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_what_is_synced_is_open_for_writing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Windows syncs nothing else."""
+
+    def sync(file: int) -> None:
+        os.write(file, b"")
+        synced.append(file)
+
+    synced: list[int] = []
+    monkeypatch.setattr(os, "fsync", sync)
+    write_text(tmp_path / "file.txt", "new")
+    assert len(synced) == 1
+    assert (tmp_path / "file.txt").read_bytes() == b"new"
+
+
+def test_a_write_waits_while_the_file_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Windows refuses to replace a file that somebody reads."""
+
+    def refuse(source: Path, target: Path) -> None:
+        refusals.append(target)
+        if len(refusals) <= num_refused:
+            raise PermissionError(13, "Access is denied", str(target))
+        replace(source, target)
+
+    replace, refusals, num_refused = os.replace, list[Path](), 3
+    monkeypatch.setattr(os, "replace", refuse)
+    write_text(tmp_path / "file.txt", "new")
+    assert len(refusals) == 4
+    assert (tmp_path / "file.txt").read_bytes() == b"new"
+    num_refused = 9999
+    monkeypatch.setattr("sparse_mocap.files._DENIED_FOR_S", 0.05)
+    with pytest.raises(PermissionError):
+        write_text(tmp_path / "file.txt", "newer")
+    assert (tmp_path / "file.txt").read_bytes() == b"new"
+    assert list(tmp_path.iterdir()) == [tmp_path / "file.txt"]
 
 
 def test_what_cannot_be_written_names_the_file_that_was_meant(tmp_path: Path) -> None:

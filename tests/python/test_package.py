@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import platform
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 import sparse_mocap
@@ -36,6 +38,21 @@ def test_without_a_core_one_line_names_this_python() -> None:
     assert done.stderr == ""
     assert len(done.stdout.splitlines()) == 1
     assert f"CPython {platform.python_version()}" in done.stdout
+
+
+@pytest.mark.parametrize("ending", ["cpython-39-x86_64-linux-gnu.so", "cp39-win_amd64.pyd"])
+def test_without_a_core_the_line_names_those_that_are_there(tmp_path: Path, ending: str) -> None:
+    package = tmp_path / "sparse_mocap"
+    package.mkdir()
+    shutil.copy(str(sparse_mocap.__file__), package)
+    (package / f"_core.{ending}").write_bytes(b"")
+    (package / "_core.pyi").write_bytes(b"")
+    done = run_python(
+        f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import sparse_mocap\n"
+        "try:\n    sparse_mocap.MotionDatabase\nexcept ImportError as error:\n    print(error)"
+    )
+    assert done.stderr == ""
+    assert f"(the folder holds _core.{ending})" in done.stdout
 
 
 def test_the_command_without_a_core_says_so_in_one_line() -> None:

@@ -94,13 +94,13 @@ class CaptureClient:
 
         Raises CaptureError with the reason of a link that failed, or after the timeout.
         """
-        end = time.monotonic() + timeout_s
+        end = time.perf_counter() + timeout_s
         while True:
             status = self.status()
             links = status["links"]
             failed = [link for link in links if link["state"] == "failed"]
             waiting = [link for link in links if link["state"] != "streaming"]
-            if failed or (waiting and time.monotonic() > end):
+            if failed or (waiting and time.perf_counter() > end):
                 link = (failed or waiting)[0]
                 reason = (
                     link["message"]
@@ -157,8 +157,8 @@ class CaptureClient:
         self.close()
 
     def _wait_for_end(self) -> None:
-        end = time.monotonic() + START_TIMEOUT_S
-        while session_path(self.session.pid).exists() and time.monotonic() < end:
+        end = time.perf_counter() + START_TIMEOUT_S
+        while session_path(self.session.pid).exists() and time.perf_counter() < end:
             time.sleep(0.02)
 
     def _ask(self, request: str, **arguments: Any) -> dict[str, Any]:
@@ -186,8 +186,8 @@ def start_capture(config: CaptureConfig, folder: Path) -> CaptureClient:
         raise CaptureError(f"{folder}: the folder is not empty; choose another one")
     write_text(folder / CONFIG_NAME, json.dumps(config.as_json()))
     process = _launched(folder)
-    end = time.monotonic() + START_TIMEOUT_S
-    while time.monotonic() < end and process.poll() is None:
+    end = time.perf_counter() + START_TIMEOUT_S
+    while time.perf_counter() < end and process.poll() is None:
         session = read_session(session_path(process.pid))
         if session is not None and session.folder == str(folder):
             return CaptureClient(session, position=0)

@@ -176,8 +176,8 @@ class Emulator:
         due = instants(self.take)
         for line in self.lines:
             self._send(line, line.encoder.hello())
-        self._until(time.monotonic_ns() + int(_GREETING_S * 1e9))
-        self.begin_ns = time.monotonic_ns()
+        self._until(time.perf_counter_ns() + int(_GREETING_S * 1e9))
+        self.begin_ns = time.perf_counter_ns()
         pending = _Pending(self.faults)
         for time_s, samples in due:
             if must_end():
@@ -259,7 +259,7 @@ class Emulator:
     def _until(self, deadline_ns: int) -> None:
         while True:
             self._answer()
-            rest_s = (deadline_ns - time.monotonic_ns()) * 1e-9
+            rest_s = (deadline_ns - time.perf_counter_ns()) * 1e-9
             if rest_s <= 0.0:
                 return
             time.sleep(min(rest_s, _LONGEST_SLEEP_S))
@@ -280,8 +280,8 @@ class Emulator:
 
     def _drain(self, must_end: Callable[[], bool]) -> None:
         """Gives the host time to read the last bytes, which closing would discard."""
-        end = time.monotonic() + _DRAIN_S
-        while time.monotonic() < end and not must_end():
+        end = time.perf_counter() + _DRAIN_S
+        while time.perf_counter() < end and not must_end():
             if not any(line.is_open() for line in self.lines):
                 return
             self._answer()

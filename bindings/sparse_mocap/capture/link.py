@@ -167,7 +167,7 @@ class Link:
         return reason
 
     def _handle(self, port: Any, inbox: SimpleQueue[_Item | Exception]) -> str:
-        last_byte_s = last_sample_s = last_keep_alive_s = time.monotonic()
+        last_byte_s = last_sample_s = last_keep_alive_s = time.perf_counter()
         while not self._stop.is_set():
             item = _next(inbox)
             if isinstance(item, Exception):
@@ -180,7 +180,7 @@ class Link:
                 if came.num_samples:
                     last_sample_s = last_byte_s
                     self._enter(State.STREAMING)
-            now_s = last_byte_s if item is not None else time.monotonic()
+            now_s = last_byte_s if item is not None else time.perf_counter()
             if now_s - last_keep_alive_s > KEEP_ALIVE_S:
                 last_keep_alive_s = now_s
                 self._write(port, self.sink.keep_alive(self.index))
@@ -231,7 +231,7 @@ def _fetch(port: Any, inbox: SimpleQueue[_Item | Exception], is_over: threading.
             while data and len(data) < LONGEST_READ and (waiting := port.in_waiting):
                 data += port.read(min(waiting, LONGEST_READ - len(data)))
             if data:
-                inbox.put(_Item(time.monotonic_ns(), data, getattr(port, "sender", "")))
+                inbox.put(_Item(time.perf_counter_ns(), data, getattr(port, "sender", "")))
             while inbox.qsize() > MOST_WAITING and not is_over.wait(0.01):
                 pass
     except PORT_ERRORS as error:

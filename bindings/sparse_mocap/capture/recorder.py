@@ -124,9 +124,9 @@ class Recorder:
         full = None
         with self._lock:
             recording = self.recording
-            if recording and recording.until_ns and time.monotonic_ns() >= recording.until_ns:
+            if recording and recording.until_ns and time.perf_counter_ns() >= recording.until_ns:
                 self._stop_recording()
-            self._rates.append((time.monotonic(), dict(self._num_of)))
+            self._rates.append((time.perf_counter(), dict(self._num_of)))
             if self.recording is None:
                 with suppress(OSError):  # a full disk is reported by arrived()
                     full = self._raw.roll_over()
@@ -141,7 +141,7 @@ class Recorder:
     def start_recording(self, seconds: float | None) -> dict[str, Any]:
         """Records for this long from now, or until stopped; a running recording continues."""
         with self._lock:
-            now = time.monotonic_ns()
+            now = time.perf_counter_ns()
             if self.recording is None:
                 self.recording = Recording(self.num_recordings, now, None, self._log.num_samples)
                 self._raw.begin_recording()
@@ -159,7 +159,7 @@ class Recorder:
     def status(self) -> dict[str, Any]:
         """The status of the capture, as a JSON object."""
         with self._lock:
-            now_ns = time.monotonic_ns()
+            now_ns = time.perf_counter_ns()
             return {
                 "now_ns": now_ns,
                 "folder": str(self.folder),
@@ -193,7 +193,7 @@ class Recorder:
         recording = self.recording
         return {
             "number": recording.number,
-            "seconds": (time.monotonic_ns() - recording.begin_ns) * 1e-9,
+            "seconds": (time.perf_counter_ns() - recording.begin_ns) * 1e-9,
             "samples": self._log.num_samples - recording.first_sample,
             "first_sample": recording.first_sample,
         }
@@ -251,5 +251,5 @@ class Recorder:
             return 0.0
         begin_s, then = self._rates[0]
         return (self._num_of.get(index, 0) - then.get(index, 0)) / max(
-            time.monotonic() - begin_s, 0.1
+            time.perf_counter() - begin_s, 0.1
         )

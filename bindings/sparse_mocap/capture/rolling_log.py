@@ -45,7 +45,7 @@ class RollingLog:
         """about: the event at the start of every file."""
         self._folder, self._about = folder, about
         self._writer = RawLogWriter(folder)
-        self._writer.append_event(0, time.monotonic_ns(), about)
+        self._writer.append_event(0, time.perf_counter_ns(), about)
         self._begins: dict[int, _Begin] = {}
         self._is_recorded = False
         self._is_due = False
@@ -53,7 +53,7 @@ class RollingLog:
 
     def append_event(self, link: int, event: dict[str, Any]) -> int:
         """Appends an event and returns its time."""
-        now_ns = time.monotonic_ns()
+        now_ns = time.perf_counter_ns()
         self._writer.append_event(link, now_ns, event)
         if event["event"] == "connected":
             self._begins[link] = _Begin(event, now_ns)
@@ -119,7 +119,7 @@ class RollingLog:
         return writer
 
     def _repeat(self, writer: RawLogWriter) -> None:
-        now_ns = time.monotonic_ns()
+        now_ns = time.perf_counter_ns()
         writer.append_event(0, now_ns, {**self._about, "is_later": True})
         for link, begin in self._begins.items():
             writer.append_event(link, begin.opened_ns, begin.event)

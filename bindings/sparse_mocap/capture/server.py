@@ -62,12 +62,12 @@ class Server:
     def run(self) -> None:
         """Serves until a client requests the end, or without clients and recordings."""
         path: Path = write_session(self.session())
-        next_tick = last_needed = time.monotonic()
+        next_tick = last_needed = time.perf_counter()
         try:
             while not self.must_end:
-                for key, _ in self._selector.select(max(0.0, next_tick - time.monotonic())):
+                for key, _ in self._selector.select(max(0.0, next_tick - time.perf_counter())):
                     self._serve(key)
-                now = time.monotonic()
+                now = time.perf_counter()
                 if now >= next_tick:
                     self._recorder.tick()
                     next_tick = now + TICK_S

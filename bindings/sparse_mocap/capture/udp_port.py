@@ -37,7 +37,8 @@ class UdpPort:
         """Returns a whole datagram, or nothing after the timeout."""
         try:
             data, address = self._socket.recvfrom(_LONGEST_DATAGRAM)
-        except TimeoutError:
+        except (TimeoutError, ConnectionResetError):
+            # On Windows, reading reports that a datagram sent before was refused.
             self.sender = ""
             return b""
         self.sender = f"{address[0]}:{address[1]}"

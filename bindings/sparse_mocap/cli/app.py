@@ -77,7 +77,12 @@ def app() -> None:
 def run(arguments: Sequence[str] | None = None) -> int:
     """Runs a command line (sys.argv when None) and returns its exit code."""
     try:
-        result = app.main(arguments, prog_name="sparse-mocap", standalone_mode=False)
+        result = app.main(
+            arguments,
+            prog_name="sparse-mocap",
+            standalone_mode=False,
+            windows_expand_args=False,  # patterns such as --exclude '*_raw.bvh' are for the command
+        )
     except click.ClickException as error:
         error.show()
         return error.exit_code

@@ -87,14 +87,14 @@ def import_bar(label: str) -> Iterator[tuple[ProgressCallback, DetailsCallback]]
     )
     with interrupted() as stop, bar:
         task = bar.add_task(label, total=None, what="", figures="")
-        start = time.monotonic()
+        start = time.perf_counter()
 
         def details(report: ProgressReport) -> None:
             bar.update(
                 task,
                 completed=report.bytes,
                 total=report.num_bytes or None,
-                figures=figures_of(report, time.monotonic() - start),
+                figures=figures_of(report, time.perf_counter() - start),
                 what=report.what[:40],
             )
 

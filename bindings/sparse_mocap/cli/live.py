@@ -148,11 +148,11 @@ def _watch(
     console = Console(stderr=True, highlight=False)
     screen = stack.enter_context(Live(console=console, auto_refresh=False, transient=True))
     stop = stack.enter_context(interrupted())
-    begin = time.monotonic()
+    begin = time.perf_counter()
     next_refresh = begin
-    while not stop.is_set() and (seconds is None or time.monotonic() - begin < seconds):
+    while not stop.is_set() and (seconds is None or time.perf_counter() - begin < seconds):
         session.advance()
-        now = time.monotonic()
+        now = time.perf_counter()
         if now >= next_refresh and console.is_terminal:
             screen.update(view(client.status(), session), refresh=True)
             next_refresh = now + _REFRESH_S

@@ -67,7 +67,7 @@ class LiveSession:
         """Reads the samples that have arrived and reconstructs the poses that are due."""
         self._reconstructor.push(self._client.read())
         begin = time.perf_counter()
-        estimates = self._reconstructor.advance(time.monotonic())
+        estimates = self._reconstructor.advance(time.perf_counter())
         for estimate in estimates:
             self.step_s.append((time.perf_counter() - begin) / len(estimates))
             self._add_pose(estimate)
@@ -92,7 +92,7 @@ class LiveSession:
     def _add_pose(self, estimate: PoseEstimate) -> None:
         self.num_poses += 1
         self._live_match.add(estimate)
-        self.latencies_s.append(time.monotonic() - estimate.time_s)
+        self.latencies_s.append(time.perf_counter() - estimate.time_s)
         if self._begin_s is None:
             self._begin_s = estimate.time_s
         if self._file is not None:

@@ -150,9 +150,9 @@ def test_a_held_capture_does_not_hold_the_session(port, tmp_path):
     [capture] = CaptureClient.running()
     os.kill(capture.pid, signal.SIGSTOP)
     try:
-        begin = time.monotonic()
+        begin = time.perf_counter()
         session.close()
-        assert time.monotonic() - begin < 2 * live.STOP_WITHIN_S
+        assert time.perf_counter() - begin < 2 * live.STOP_WITHIN_S
     finally:
         os.kill(capture.pid, signal.SIGCONT)
     until(lambda: not is_alive(capture.pid))
@@ -208,7 +208,7 @@ def test_a_preview_that_is_too_slow_uses_the_newest_reading(made):
     samples = np.zeros(int(100 * seconds) * len(SITES), SAMPLE)
     samples["sensor"] = np.tile(np.arange(len(SITES)), len(samples) // len(SITES))
     times_s = np.repeat(np.arange(len(samples) // len(SITES)) / 100.0, len(SITES))
-    samples["arrival_ns"] = (time.monotonic() - seconds + times_s) * 1e9
+    samples["arrival_ns"] = (time.perf_counter() - seconds + times_s) * 1e9
     samples["device_time_s"], samples["specific_force"] = times_s, [0.0, 0.0, 9.81]
     assert poses.advance(samples) is None
     assert poses.quality().num_skipped > 80

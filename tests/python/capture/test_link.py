@@ -41,7 +41,7 @@ class Notes:
     def arrived(self, link: int, arrival_ns: int, data: bytes, sender: str) -> Arrived:
         if self.is_full:
             raise LogError("/full: No space left on device; free some space")
-        assert 0 <= time.monotonic_ns() - arrival_ns < 5 * 10**9
+        assert 0 <= time.perf_counter_ns() - arrival_ns < 5 * 10**9
         time.sleep(self.pause_s)
         self.pause_s = 0.0
         self.data += data
@@ -53,9 +53,9 @@ class Notes:
 
 
 def until(is_so: Callable[[], Any], timeout_s: float = 10.0) -> None:
-    end = time.monotonic() + timeout_s
+    end = time.perf_counter() + timeout_s
     while not is_so():
-        assert time.monotonic() < end, "it never happened"
+        assert time.perf_counter() < end, "it never happened"
         time.sleep(0.005)
 
 
@@ -154,11 +154,11 @@ def test_unplugged_and_back_under_another_name(links: Links, device: Device) -> 
     taken = os.openpty()  # so that the name is not given again
     until(lambda: "no such port" in link.message)
     device.plug_in()
-    back = time.monotonic()
+    back = time.perf_counter()
     until(lambda: len(notes.connections) == 2)
     device.send(b"s")
     until(lambda: link.state is State.STREAMING)
-    assert time.monotonic() - back < 2.0
+    assert time.perf_counter() - back < 2.0
     assert device.name != first
     assert link.num_reconnects == 1
     assert link.message == ""
@@ -331,7 +331,7 @@ def test_a_port_that_cannot_even_be_closed_is_let_go(links: Links) -> None:
 def test_stopping_does_not_wait_for_a_silent_device(links: Links, device: Device) -> None:
     link, notes = links(str(device.path))
     until(lambda: notes.connections)
-    begin = time.monotonic()
+    begin = time.perf_counter()
     link.stop()
-    assert time.monotonic() - begin < 2.0
+    assert time.perf_counter() - begin < 2.0
     open_port(str(device.path), 115200).close()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import socket
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ import serial
 from sparse_mocap.capture import ports
 from sparse_mocap.capture.errors import PortError
 from sparse_mocap.capture.ports import PortInfo, device_at, open_port, port_of
+from sparse_mocap.capture.udp_port import UdpPort
 
 LEFT = PortInfo("/dev/ttyUSB0", "", 0x1A86, 0x7523, "A1", "QinHeng", "CH340", "1-1")
 RIGHT = PortInfo("/dev/ttyUSB1", "", 0x1A86, 0x7523, "B2", "QinHeng", "CH340", "1-2")
@@ -94,3 +96,27 @@ def test_a_forbidden_port_names_the_group(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(ports.serial, "serial_for_url", forbid)
     assert "permission denied; add yourself to the port's group" in refusal("/dev/ttyUSB0")
     assert "dialout" in refusal("/dev/ttyUSB0")
+
+
+def test_a_refused_datagram_does_not_end_the_reading(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On Windows, a read after a datagram that nobody took raises ConnectionResetError."""
+
+    class Socket(socket.socket):
+        refused = 2
+
+        def recvfrom(self, size: int, flags: int = 0) -> tuple[bytes, tuple[str, int]]:
+            if Socket.refused:
+                Socket.refused -= 1
+                raise ConnectionResetError(10054, "closed by the remote host")
+            return super().recvfrom(size, flags)
+
+    monkeypatch.setattr(socket, "socket", Socket)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", 0))
+        address = free.getsockname()
+    port = UdpPort(f"udp://127.0.0.1:{address[1]}", 5.0)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sensor:
+        sensor.sendto(b"a sample", address)
+        assert [port.read(100) for _ in range(3)] == [b"", b"", b"a sample"]
+        assert port.sender == "127.0.0.1:" + str(sensor.getsockname()[1])
+    port.close()

@@ -78,7 +78,7 @@ def clock_ns(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     monkeypatch.setattr(rolling_log, "FULL_BYTES", 8_000)
     monkeypatch.setattr(sample_log, "PER_FILE", 300)
     clock_ns = [10**12]
-    monkeypatch.setattr(time, "monotonic_ns", lambda: clock_ns[0])
+    monkeypatch.setattr(time, "perf_counter_ns", lambda: clock_ns[0])
     return clock_ns
 
 
