@@ -3,6 +3,9 @@
 
 #include <pybind11/gil_safe_call_once.h>
 
+#include <cerrno>
+#include <system_error>
+
 #include "common.hpp"
 #include "sparse_mocap/retargeting/mapping_error.hpp"
 
@@ -29,6 +32,16 @@ void set_format_error(const FormatError& error) {
   PyErr_SetObject(format_error_class().ptr(), instance.ptr());
 }
 
+// The C library of this module need not be Python's, so that they share no errno, and the error may
+// be one of the system's own instead.
+void set_os_error(const std::filesystem::filesystem_error& error) {
+  const std::error_condition condition = error.code().default_error_condition();
+  const int number = condition.category() == std::generic_category() ? condition.value() : EIO;
+  const py::object instance = py::reinterpret_borrow<py::object>(PyExc_OSError)(
+      number, py::module_::import("os").attr("strerror")(number), py::str(py::cast(error.path1())));
+  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(instance.ptr())), instance.ptr());
+}
+
 }  // namespace
 
 void bind_errors(py::module_& m) {
@@ -44,8 +57,7 @@ void bind_errors(py::module_& m) {
     } catch (const FormatError& error) {
       set_format_error(error);
     } catch (const std::filesystem::filesystem_error& error) {
-      errno = error.code().value();
-      PyErr_SetFromErrnoWithFilename(PyExc_OSError, error.path1().string().c_str());
+      set_os_error(error);
     }
   });
   py::register_exception<ConfigError>(m, "ConfigError", PyExc_ValueError).doc() =

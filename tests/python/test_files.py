@@ -4,12 +4,23 @@
 from __future__ import annotations
 
 import csv
+import errno
+import gc
 import os
 from pathlib import Path
 
 import numpy as np
 import pytest
-from sparse_mocap import FormatError, read_positions, write_positions
+from sparse_mocap import (
+    FormatError,
+    MotionDatabase,
+    build_database,
+    drop_from_database,
+    read_motion,
+    read_positions,
+    write_bvh,
+    write_positions,
+)
 from sparse_mocap.files import replaced, write_text
 
 
@@ -83,6 +94,46 @@ def test_what_cannot_be_written_names_the_file_that_was_meant(tmp_path: Path) ->
         write_text(tmp_path / "nowhere" / "file.txt", "")
     with pytest.raises(IsADirectoryError):
         write_text(tmp_path, "")
+
+
+def test_files_may_be_called_in_any_language(library: Path, tmp_path: Path) -> None:
+    """A Windows program that does not take care sees only the letters of one region."""
+    folder = tmp_path / "Bewegungen für 动作"
+    folder.mkdir()
+    motion, _ = read_motion(sorted(library.glob("*.bvh"))[0])
+    write_bvh(folder / "ü中.bvh", motion)
+    again, _ = read_motion(folder / "ü中.bvh")
+    assert again.num_frames == motion.num_frames
+    build_database([folder], folder / "数据.smdb")
+    assert {clip.source for clip in MotionDatabase(folder / "数据.smdb").clips} == {"ü中.bvh"}
+    with pytest.raises(FormatError, match=r"für 动作.*没有\.bvh: no such file"):
+        read_motion(folder / "没有.bvh")
+    assert {path.name for path in folder.iterdir()} == {"ü中.bvh", "数据.smdb"}
+
+
+def test_what_the_core_cannot_write_is_an_error_of_the_system(
+    library: Path, tmp_path: Path
+) -> None:
+    motion, _ = read_motion(sorted(library.glob("*.bvh"))[0])
+    with pytest.raises(FileNotFoundError) as caught:
+        write_bvh(tmp_path / "nowhere" / "ü.bvh", motion)
+    assert caught.value.errno == errno.ENOENT
+    assert caught.value.strerror == os.strerror(errno.ENOENT)
+    assert Path(caught.value.filename).parent == tmp_path / "nowhere"
+
+
+def test_a_database_is_replaced_while_it_is_open(library: Path, tmp_path: Path) -> None:
+    """Its content stays, and nothing is left behind once nobody has the old one open."""
+    path = tmp_path / "library.smdb"
+    build_database([library], path)
+    opened = MotionDatabase(path)
+    num_clips, positions = len(opened.clips), opened.array("positions").copy()
+    num_dropped = drop_from_database(path, [opened.clips[0].name])
+    np.testing.assert_array_equal(opened.array("positions"), positions)
+    del opened
+    gc.collect()
+    assert len(MotionDatabase(path).clips) == num_clips - num_dropped
+    assert [entry.name for entry in tmp_path.iterdir()] == ["library.smdb"]
 
 
 def test_positions_survive_a_file(tmp_path: Path) -> None:

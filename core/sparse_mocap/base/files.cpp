@@ -6,15 +6,8 @@
 #include <cstdio>
 #include <system_error>
 
-#ifdef _WIN32
-#include <io.h>
-#include <process.h>
-#else
-#include <fcntl.h>
-#include <unistd.h>
-#endif
-
 #include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/base/system_files.hpp"
 
 namespace sparse_mocap {
 namespace {
@@ -25,14 +18,6 @@ namespace fs = std::filesystem;
   throw fs::filesystem_error(action, path, std::error_code(errno, std::generic_category()));
 }
 
-int process_id() {
-#ifdef _WIN32
-  return _getpid();
-#else
-  return getpid();
-#endif
-}
-
 fs::path temporary_beside(const fs::path& path) {
   static std::atomic<unsigned> counter{0};
   fs::path temporary = path;
@@ -40,30 +25,10 @@ fs::path temporary_beside(const fs::path& path) {
   return temporary;
 }
 
-void sync_file(std::FILE* file) {
-#ifdef _WIN32
-  _commit(_fileno(file));
-#else
-  if (fsync(fileno(file)) != 0) throw std::system_error(errno, std::generic_category());
-#endif
-}
-
-// A rename is durable only once the folder that holds the name is.
-void sync_folder(const fs::path& folder) {
-#ifndef _WIN32
-  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  fsync(descriptor);
-  close(descriptor);
-#else
-  (void)folder;
-#endif
-}
-
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& target) : path_(temporary_beside(target)) {
-    file_ = std::fopen(path_.string().c_str(), "wbx");
+    file_ = create_file(path_);
     if (file_ == nullptr) throw_errno("cannot create file", path_);
   }
   TemporaryFile(const TemporaryFile&) = delete;
@@ -81,12 +46,11 @@ class TemporaryFile {
   }
 
   void rename_to(const fs::path& target) {
-    if (std::fflush(file_) != 0) throw_errno("cannot write", path_);
-    sync_file(file_);
+    if (std::fflush(file_) != 0 || !sync_file(file_)) throw_errno("cannot write", path_);
     std::FILE* closing = file_;
     file_ = nullptr;
     if (std::fclose(closing) != 0) throw_errno("cannot write", path_);
-    fs::rename(path_, target);
+    replace_file(path_, target);
     path_.clear();
   }
 
@@ -113,7 +77,7 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
                           std::to_string(max_bytes),
                       "raise the limit max_bytes if that is intended");
   }
-  std::FILE* file = std::fopen(path.string().c_str(), "rb");
+  std::FILE* file = open_file(path);
   if (file == nullptr) {
     throw FormatError({path},
                       std::string("cannot be read: ") + std::generic_category().message(errno));

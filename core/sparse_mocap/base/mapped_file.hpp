@@ -19,8 +19,8 @@ class Bytes {
 
 std::shared_ptr<const Bytes> own_bytes(std::vector<std::byte> bytes);
 
-// Maps the file where the system can, otherwise reads it. A file that is replaced by rename keeps
-// its old content here. Throws FormatError when it is missing, a folder or unreadable.
+// Maps the file. One that is replaced by rename keeps its old content here. Throws FormatError when
+// it is missing, a folder or unreadable.
 std::shared_ptr<const Bytes> map_file(const std::filesystem::path& path);
 
 }  // namespace sparse_mocap

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "sparse_mocap/base/mapped_file.hpp"
+
+// What files need of the operating system: system_files_posix.cpp or system_files_windows.cpp.
+namespace sparse_mocap {
+
+int process_id();
+
+// Both give nullptr and set errno when it does not work. A created file was not there before.
+std::FILE* open_file(const std::filesystem::path& path);
+std::FILE* create_file(const std::filesystem::path& path);
+
+// Waits until what was written is on the disk. Returns false and sets errno when it does not work.
+bool sync_file(std::FILE* file);
+
+// Renames a file over another, which may be missing or mapped. Throws std::filesystem_error.
+void replace_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
+// A rename is durable only once the folder that holds the name is.
+void sync_folder(const std::filesystem::path& folder);
+
+// Maps a regular file. Throws FormatError when it cannot be read.
+std::shared_ptr<const Bytes> map_regular_file(const std::filesystem::path& path);
+
+}  // namespace sparse_mocap

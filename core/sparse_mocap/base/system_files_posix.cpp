@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+#include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/base/system_files.hpp"
+
+namespace sparse_mocap {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MappedBytes : public Bytes {
+ public:
+  MappedBytes(void* address, std::size_t size) : address_(address), size_(size) {}
+  MappedBytes(const MappedBytes&) = delete;
+  MappedBytes& operator=(const MappedBytes&) = delete;
+  ~MappedBytes() override { munmap(address_, size_); }
+  std::span<const std::byte> view() const override {
+    return {static_cast<const std::byte*>(address_), size_};
+  }
+
+ private:
+  void* address_;
+  std::size_t size_;
+};
+
+class Descriptor {
+ public:
+  explicit Descriptor(const fs::path& path) : value(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (value >= 0) close(value);
+  }
+  const int value;
+};
+
+[[noreturn]] void refuse(const fs::path& path, const std::string& what) {
+  throw FormatError({path}, what + ": " + std::generic_category().message(errno));
+}
+
+}  // namespace
+
+int process_id() { return getpid(); }
+
+std::FILE* open_file(const fs::path& path) { return std::fopen(path.c_str(), "rb"); }
+
+std::FILE* create_file(const fs::path& path) { return std::fopen(path.c_str(), "wbx"); }
+
+bool sync_file(std::FILE* file) { return fsync(fileno(file)) == 0; }
+
+void replace_file(const fs::path& from, const fs::path& to) { fs::rename(from, to); }
+
+void sync_folder(const fs::path& folder) {
+  const Descriptor descriptor(folder);
+  if (descriptor.value >= 0) fsync(descriptor.value);
+}
+
+std::shared_ptr<const Bytes> map_regular_file(const fs::path& path) {
+  const Descriptor file(path);
+  struct stat status {};
+  if (file.value < 0 || fstat(file.value, &status) != 0) refuse(path, "cannot be read");
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size == 0) return own_bytes({});
+  void* address = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.value, 0);
+  if (address == MAP_FAILED) refuse(path, "cannot be mapped");
+  return std::make_shared<MappedBytes>(address, size);
+}
+
+}  // namespace sparse_mocap
