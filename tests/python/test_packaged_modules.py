@@ -5,13 +5,24 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import re
 import shutil
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import pytest
-from made_modules import ENTRY, MODULE_311, MODULE_313, compiled, small_modules
-from release_files import archives, checks, elf
+from made_modules import (
+    ENTRY,
+    MODULE_311,
+    MODULE_313,
+    WINDOWS_311,
+    WINDOWS_313,
+    compiled,
+    small_modules,
+    windows_module,
+)
+from release_files import archives, checks, elf, pe
 from release_files.errors import PackagingError
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -28,7 +39,7 @@ def test_a_module_that_is_as_it_must_be_passes(modules: dict[str, bytes]) -> Non
         "name": MODULE_311,
         "size": len(modules[MODULE_311]),
         "sha256": hashlib.sha256(modules[MODULE_311]).hexdigest(),
-        "newest_glibc": "0",
+        "system": "glibc 0",
         "exported": ("PyInit__core",),
         "needed": (),
     }
@@ -105,6 +116,56 @@ def test_a_damaged_module_is_refused(modules: dict[str, bytes], length: int) -> 
 def test_a_module_of_another_name_is_refused(modules: dict[str, bytes]) -> None:
     with pytest.raises(PackagingError, match=r"_core\.so is not called as CPython"):
         checks.checked_module("_core.so", modules[MODULE_311])
+
+
+# --- Windows -------------------------------------------------------------------------------------
+
+
+def test_a_windows_module_that_is_as_it_must_be_passes() -> None:
+    module = windows_module("python311.dll")
+    found = checks.checked_module(WINDOWS_311, module, ["/home/builder"])
+    assert found.exported == ("PyInit__core",)
+    assert found.needed == ("KERNEL32.dll", "msvcrt.dll", "python311.dll")
+    assert found.system == "Windows"
+    assert found.sha256 == hashlib.sha256(module).hexdigest()
+
+
+@pytest.mark.parametrize(
+    ("changes", "fault"),
+    [
+        ({"exported": ("PyInit__core", "other")}, "it exports PyInit__core, other, which must"),
+        ({"exported": ()}, "it exports nothing, which must be PyInit__core alone"),
+        ({"more": ("libstdc++-6.dll",)}, r"it needs libstdc\+\+-6\.dll, which other machines"),
+        ({"python": "python313.dll"}, r"it does not need python311\.dll, which its name promises"),
+        ({"machine": 0xAA64}, "it is for another processor than x86-64"),
+        ({"linked_at_s": 1_700_000_000}, "it holds the time at which it was linked"),
+        ({"num_symbols": 3}, "it still holds the symbols of the linker"),
+        ({"text": b"/home/me/x.cpp"}, "it holds the name of the folder /home/me"),
+    ],
+)
+def test_a_windows_module_that_others_cannot_use_is_refused(
+    changes: dict[str, Any], fault: str
+) -> None:
+    module = windows_module(**{"python": "python311.dll", **changes})
+    with pytest.raises(PackagingError, match=f"^{re.escape(WINDOWS_311)}: .*{fault}"):
+        checks.checked_module(WINDOWS_311, module, ["/home/me"])
+
+
+def test_the_reader_of_windows_libraries_agrees_with_objdump(tmp_path: Path) -> None:
+    made = tmp_path / "made.pyd"
+    made.write_bytes(windows_module("python313.dll", exported=("PyInit__core", "other")))
+    library = pe.read_library(made.read_bytes())
+    run = subprocess.run(["objdump", "-p", made], capture_output=True, text=True, check=True)
+    assert list(library.needed) == re.findall(r"DLL Name: (\S+)", run.stdout)
+    names = run.stdout.partition("[Ordinal/Name Pointer] Table")[2]
+    assert list(library.exported) == re.findall(r"\] (?:[0-9a-f]{4} )?(\w+)$", names, re.MULTILINE)
+    assert library.exported == ("PyInit__core", "other")
+
+
+@pytest.mark.parametrize("length", [0, 5, 63, 100, 300, 700])
+def test_a_damaged_windows_module_is_refused(length: int) -> None:
+    with pytest.raises(PackagingError, match=r"is (not|a damaged)"):
+        checks.checked_module(WINDOWS_313, windows_module("python313.dll")[:length])
 
 
 def test_an_archive_with_another_module_is_refused(modules: dict[str, bytes]) -> None:

@@ -18,7 +18,14 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from made_modules import MODULE_311, MODULE_313, small_modules
+from made_modules import (
+    MODULE_311,
+    MODULE_313,
+    WINDOWS_311,
+    WINDOWS_313,
+    small_modules,
+    small_windows_modules,
+)
 from release_files import addons, archives, checks, project, release, sdist, wheels
 from release_files.errors import PackagingError
 
@@ -237,7 +244,7 @@ def test_every_part_of_others_comes_with_its_licence(made: release.Release) -> N
 
 def test_a_manifest_with_wheels_of_its_own_is_refused() -> None:
     with pytest.raises(PackagingError, match="already has"):
-        addons.manifest('wheels = ["a.whl"]\n[permissions]\n', ["b.whl"])
+        addons.manifest('wheels = ["a.whl"]\n[permissions]\n', ["b.whl"], ["linux-x64"])
 
 
 def test_the_plain_addon_holds_all_it_needs_for_cpython_3_11(
@@ -324,8 +331,32 @@ def test_what_is_written_is_listed_with_its_hash(made: release.Release, tmp_path
     assert len(list(release.table(made))) == 2 + 5 + 5
 
 
-def test_without_a_module_for_the_plain_addon_nothing_is_made(
+def test_a_release_for_two_systems_has_the_files_of_both(
     modules: dict[str, bytes], pyserial: tuple[str, bytes]
 ) -> None:
-    with pytest.raises(PackagingError, match="no module for cp311"):
-        release.make_release(ROOT, {MODULE_313: modules[MODULE_313]}, pyserial)
+    both = {**modules, **small_windows_modules()}
+    made = release.make_release(ROOT, both, pyserial)
+    stem = f"sparse_mocap-{made.version}"
+    of_windows = {f"{stem}-{tag}-{tag}-win_amd64.whl" for tag in ("cp311", "cp313")}
+    assert of_windows | {f"{stem}-legacy-windows-x64.zip"} <= made.files.keys()
+    files = extension(made)
+    manifest = tomllib.loads(files["blender_manifest.toml"].decode())
+    assert manifest["platforms"] == ["linux-x64", "windows-x64"]
+    for platform, held_modules in (
+        ("manylinux_2_28_x86_64", modules),
+        ("win_amd64", small_windows_modules()),
+    ):
+        name = f"wheels/{stem}-py3-none-{platform}.whl"
+        assert f"./{name}" in manifest["wheels"]
+        assert set(checks.modules_in(archives.unzipped(files[name]))) == set(held_modules)
+    legacy = held(made, "-legacy-windows-x64.zip")
+    assert set(checks.modules_in(legacy)) == {WINDOWS_311}
+
+
+@pytest.mark.parametrize("lone", [MODULE_313, WINDOWS_313])
+def test_without_a_module_for_the_plain_addon_nothing_is_made(
+    modules: dict[str, bytes], pyserial: tuple[str, bytes], lone: str
+) -> None:
+    both = {**modules, **small_windows_modules()}
+    with pytest.raises(PackagingError, match="no module for cp311 on "):
+        release.make_release(ROOT, {lone: both[lone]}, pyserial)

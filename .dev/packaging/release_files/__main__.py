@@ -13,11 +13,17 @@ def main() -> int:
     """Make the release and print the table; 1 when something must not be handed out."""
     parser = argparse.ArgumentParser(prog="release_files", description=__doc__)
     parser.add_argument("root", type=Path, help="the folder of the sources")
-    parser.add_argument("--modules", type=Path, required=True, help="folder of compiled modules")
+    parser.add_argument(
+        "--modules", type=Path, nargs="+", required=True, help="folders of compiled modules"
+    )
     parser.add_argument("--pyserial", type=Path, required=True, help="folder of pyserial's wheel")
     parser.add_argument("--output", type=Path, required=True)
     options = parser.parse_args()
-    modules = {path.name: path.read_bytes() for path in options.modules.glob("_core*.so")}
+    modules = {
+        path.name: path.read_bytes()
+        for folder in options.modules
+        for path in sorted(folder.glob("_core*"))
+    }
     try:
         pyserial = _only_wheel(options.pyserial)
         release = make_release(options.root.resolve(), modules, pyserial)

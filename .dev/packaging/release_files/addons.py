@@ -8,31 +8,30 @@ from .archives import Files, under, unzipped
 from .errors import PackagingError
 from .project import Project
 
-PLATFORMS = ("linux-x64",)
 LEGACY_FOLDER = "sparse_mocap_addon"
 """Blender puts the folder of add-ons on the module path: one called ``sparse_mocap`` would hide the
 package of that name, which the add-on needs."""
 
 
-def extension_files(project: Project, wheels: Files) -> dict[str, bytes]:
+def extension_files(project: Project, wheels: Files, platforms: Sequence[str]) -> dict[str, bytes]:
     """What the extension holds: the add-on, its manifest, and the wheels that Blender installs."""
     return {
         **project.addon,
         **project.licences,
         **under("wheels", wheels),
-        "blender_manifest.toml": manifest(project.manifest, sorted(wheels)).encode(),
+        "blender_manifest.toml": manifest(project.manifest, sorted(wheels), platforms).encode(),
     }
 
 
-def manifest(text: str, wheels: Sequence[str]) -> str:
+def manifest(text: str, wheels: Sequence[str], platforms: Sequence[str]) -> str:
     """The manifest with the platforms and wheels of this release; PackagingError if it has some."""
     keys = tomllib.loads(text)
     if present := sorted({"platforms", "wheels"} & keys.keys()):
         raise PackagingError(f"the manifest already has {present}: packaging fills these in")
     first_table = text.index("\n[") + 1  # a key after it would belong to that table
-    platforms = ", ".join(f'"{name}"' for name in PLATFORMS)
+    systems = ", ".join(f'"{name}"' for name in platforms)
     listed = "".join(f'  "./wheels/{name}",\n' for name in wheels)
-    filled = f"platforms = [{platforms}]\nwheels = [\n{listed}]\n\n"
+    filled = f"platforms = [{systems}]\nwheels = [\n{listed}]\n\n"
     return text[:first_table] + filled + text[first_table:]
 
 

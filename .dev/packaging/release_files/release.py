@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All files of a release for Linux, made in one go, checked, and reported."""
+"""All files of a release, made in one go, checked, and reported."""
 
 import dataclasses
 import hashlib
@@ -18,11 +18,11 @@ from .checks import (
     check_same_modules,
     checked_module,
     modules_in,
-    python_tag,
 )
 from .errors import PackagingError
 from .project import Project, read_project
 from .sdist import sdist_files, sdist_name
+from .targets import Target, target_of, targets_of
 from .wheels import wheel_files, wheel_name
 
 LEGACY_PYTHON = "cp311"
@@ -71,15 +71,10 @@ def make_release(root: Path, modules: Files, pyserial: tuple[str, bytes]) -> Rel
         project.version,
         [checked_module(name, data, private) for name, data in sorted(modules.items())],
     )
-    legacy = {name: data for name, data in modules.items() if python_tag(name) == LEGACY_PYTHON}
-    if not legacy:
-        raise PackagingError(f"no module for {LEGACY_PYTHON} was built")
     _add_wheels(release, project, modules)
-    stem = f"sparse_mocap-{project.version}"
-    release.add(f"{stem}.zip", lambda: _extension(project, modules, pyserial))
-    release.add(
-        f"{stem}-legacy-linux-x64.zip", lambda: zipped(legacy_files(project, legacy, pyserial[1]))
-    )
+    release.add(f"{_stem(project)}.zip", lambda: _extension(project, modules, pyserial))
+    for target in targets_of(modules):
+        _add_legacy(release, project, _modules_of(target, modules), pyserial)
     release.add(f"{sdist_name(project)}.tar.gz", lambda: tarred(sdist_files(root, project)))
     _check(release)
     return release
@@ -88,21 +83,45 @@ def make_release(root: Path, modules: Files, pyserial: tuple[str, bytes]) -> Rel
 def _add_wheels(release: Release, project: Project, modules: Files) -> None:
     """The wheel of each CPython, for pip."""
     for name, data in sorted(modules.items()):
-        tag = python_tag(name)
-        files = wheel_files(project, {name: data}, tag, tag)
-        release.add(wheel_name(project, tag, tag), partial(zipped, files))
+        target, python = target_of(name)
+        tag = f"{python}-{python}-{target.wheel}"
+        files = wheel_files(project, {name: data}, tag)
+        release.add(wheel_name(project, tag), partial(zipped, files))
+
+
+def _add_legacy(
+    release: Release, project: Project, modules: Files, pyserial: tuple[str, bytes]
+) -> None:
+    """The plain add-on for one system."""
+    (target,) = targets_of(modules)
+    legacy = {n: data for n, data in modules.items() if target_of(n)[1] == LEGACY_PYTHON}
+    if not legacy:
+        raise PackagingError(f"no module for {LEGACY_PYTHON} on {target.words} was built")
+    files = legacy_files(project, legacy, pyserial[1])
+    release.add(f"{_stem(project)}-legacy-{target.blender}.zip", partial(zipped, files))
+
+
+def _modules_of(target: Target, modules: Files) -> dict[str, bytes]:
+    return {name: data for name, data in modules.items() if target_of(name)[0] == target}
+
+
+def _stem(project: Project) -> str:
+    return f"sparse_mocap-{project.version}"
 
 
 def _extension(project: Project, modules: Files, pyserial: tuple[str, bytes]) -> bytes:
-    """The extension, with one wheel for all modules.
+    """The extension, with one wheel for all modules of a system.
 
     Blender refuses an extension whose wheels are all for other CPythons. This one it installs
     everywhere: each CPython finds its own module, and where there is none the add-on says so.
     """
-    wheel = zipped(wheel_files(project, modules, "py3", "none"))
-    return zipped(
-        extension_files(project, dict([(wheel_name(project, "py3", "none"), wheel), pyserial]))
-    )
+    held = dict([pyserial])
+    targets = targets_of(modules)
+    for target in targets:
+        tag = f"py3-none-{target.wheel}"
+        files = wheel_files(project, _modules_of(target, modules), tag)
+        held[wheel_name(project, tag)] = zipped(files)
+    return zipped(extension_files(project, held, [target.blender for target in targets]))
 
 
 def _check(release: Release) -> None:
@@ -158,7 +177,7 @@ def table(release: Release) -> Iterator[str]:
     """The report for the terminal, line by line."""
     for module in release.modules:
         yield (
-            f"{module.name:<60} {_megabytes(module.size)}  glibc {module.newest_glibc}, "
+            f"{module.name:<60} {_megabytes(module.size)}  {module.system}, "
             f"exports {' '.join(module.exported)}, needs {' '.join(module.needed)}"
         )
     for name, made in sorted(release.files.items()):

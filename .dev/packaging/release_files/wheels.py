@@ -11,16 +11,15 @@ from typing import Any
 from .archives import Files, under
 from .project import Project
 
-PLATFORM = "manylinux_2_28_x86_64"
 PACKAGE = "sparse_mocap"
 
 
-def wheel_name(project: Project, python: str, abi: str) -> str:
-    """The name of a wheel for these tags, such as ``cp311`` twice or ``py3`` and ``none``."""
-    return f"{PACKAGE}-{project.version}-{python}-{abi}-{PLATFORM}.whl"
+def wheel_name(project: Project, tag: str) -> str:
+    """The name of a wheel for a tag such as ``cp311-cp311-win_amd64``."""
+    return f"{PACKAGE}-{project.version}-{tag}.whl"
 
 
-def wheel_files(project: Project, modules: Files, python: str, abi: str) -> dict[str, bytes]:
+def wheel_files(project: Project, modules: Files, tag: str) -> dict[str, bytes]:
     """What a wheel with these compiled modules holds, its RECORD included."""
     info = f"{PACKAGE}-{project.version}.dist-info"
     files = {
@@ -28,7 +27,7 @@ def wheel_files(project: Project, modules: Files, python: str, abi: str) -> dict
         **under(PACKAGE, modules),
         **under(f"{info}/licenses", project.licences),
         f"{info}/METADATA": metadata(project),
-        f"{info}/WHEEL": _wheel(python, abi),
+        f"{info}/WHEEL": _wheel(tag),
         f"{info}/entry_points.txt": _entry_points(project.settings),
     }
     files[f"{info}/RECORD"] = record(files, f"{info}/RECORD")
@@ -74,13 +73,13 @@ def _extras(extras: dict[str, list[str]]) -> Iterator[str]:
             yield f"Requires-Dist: {name}; extra == '{extra}'"
 
 
-def _wheel(python: str, abi: str) -> bytes:
+def _wheel(tag: str) -> bytes:
     return _text(
         [
             "Wheel-Version: 1.0",
             "Generator: sparse-mocap",
             "Root-Is-Purelib: false",
-            f"Tag: {python}-{abi}-{PLATFORM}",
+            f"Tag: {tag}",
         ]
     )
 
