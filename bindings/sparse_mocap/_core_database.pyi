@@ -173,11 +173,14 @@ def add_to_database(
     exclude: Sequence[str] = (),
     labels: Mapping[str, tuple[str, str, str, str]] = ...,
     label_warnings: Sequence[str] = (),
+    rebuild: bool = False,
     **options: Unpack[_ImportOptions],
 ) -> BuildReport:
     """Adds motion files to a database, with the copies that it was built with.
 
-    output: where the result goes, None: in its place. The rest is as in build_database().
+    output: where the result goes, None: in its place. rebuild: the sources hold the database's own
+    files too, and everything is built anew, so that its skeleton is averaged over all bodies. The
+    rest is as in build_database().
     """
 
 def drop_from_database(database: Path, clips: Sequence[str], output: Path | None = None) -> int:

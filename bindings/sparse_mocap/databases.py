@@ -73,12 +73,15 @@ def add_to_database(
     *,
     exclude: Sequence[str] = (),
     metadata: Path | None = None,
+    rebuild: bool = False,
     **options: Unpack[_ImportOptions],
 ) -> _core.BuildReport:
     """Adds motion files on the database's skeleton, at its rate, with its kinds of copies.
 
     Replaces the database (atomically) when output is None. Files that are in are not read again.
-    Options and errors as for build_database.
+    Programs that add to one database at once wait for one another. A warning says how far new
+    actors would change the averaged skeleton; rebuild averages it anew and needs the database's
+    own files among the sources too. Options and errors as for build_database.
     """
     labels, warnings = find_labels(sources, exclude, metadata)
     return _core.add_to_database(
@@ -88,5 +91,6 @@ def add_to_database(
         exclude=exclude,
         labels=labels,
         label_warnings=warnings,
+        rebuild=rebuild,
         **options,
     )

@@ -68,13 +68,14 @@ BuildReport add(const fs::path& database, const Paths& sources,
                 const std::optional<fs::path>& output, const std::vector<std::string>& exclude,
                 bool strict, bool keep_duplicates, int num_threads, const Labels& labels,
                 const std::vector<std::string>& label_warnings, const JointNames& by_hand,
-                const std::optional<fs::path>& mappings, const Callback& callback,
+                const std::optional<fs::path>& mappings, bool rebuild, const Callback& callback,
                 const Callback& details) {
   const ImportOptions options = import_options(exclude, strict, keep_duplicates, num_threads,
                                                labels, label_warnings, by_hand, mappings);
   const Progress progress = progress_from(callback, details);
   const py::gil_scoped_release release;
-  return add_to_database(database, sources, output.value_or(database), options, progress);
+  const auto change = rebuild ? &rebuild_database : &add_to_database;
+  return change(database, sources, output.value_or(database), options, progress);
 }
 
 int drop(const fs::path& database, const std::vector<std::string>& clips,
@@ -169,10 +170,13 @@ is then left as it was.)doc");
         py::arg("strict") = false, py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
         py::arg("labels") = Labels(), py::arg("label_warnings") = no_patterns,
         py::arg("by_hand") = JointNames(), py::arg("mappings") = py::none(),
-        py::arg("progress") = py::none(), py::arg("details") = py::none(),
+        py::arg("rebuild") = false, py::arg("progress") = py::none(),
+        py::arg("details") = py::none(),
         R"doc(Adds motion files to a database, with the copies that it was built with.
 
-output: where the result goes, None: in its place. The rest is as in build_database().)doc");
+output: where the result goes, None: in its place. rebuild: the sources hold the database's own
+files too, and everything is built anew, so that its skeleton is averaged over all bodies. The
+rest is as in build_database().)doc");
   m.def("drop_from_database", &drop, py::arg("database"), py::arg("clips"),
         py::arg("output") = py::none(),
         R"doc(Drops the clips whose name or source matches a glob pattern, and returns how many.

@@ -11,7 +11,7 @@ from bpy.types import Context, Event, Operator, OperatorFileListElement
 
 from ..scene.imported import import_steps
 from ..scene.mapping import show_mapping
-from ..session.imported import ACCLAIM, BVH, ImportOptions, LoadedMotion, file_summaries, import_job
+from ..session.imported import ACCLAIM, BVH, ImportOptions, Loaded, file_summaries, import_job
 from ..session.job import Job
 from ..session.mapping import last_mapped
 from ..session.steps import Steps
@@ -104,24 +104,26 @@ class ImportOperator(JobOperator):
         )
         return import_job(self.paths(), self.endings, options)
 
-    def apply(self, context: Context, result: list[LoadedMotion]) -> Steps[str]:
+    def apply(self, context: Context, result: Loaded) -> Steps[str]:
         """One armature for each file."""
         made = yield from import_steps(
             context,
-            result,
+            result.motions,
             self.start_frame,
             keeps_timing=self.keep_timing,
         )
-        show_mapping(context, result[-1].mapped)
-        warnings = [warning for motion in result for warning in motion.warnings]
+        show_mapping(context, result.motions[-1].mapped)
+        warnings = [f"Not imported: {problem}" for problem in result.problems]
+        warnings += [warning for motion in result.motions for warning in motion.warnings]
         for warning in warnings[:_MOST_WARNINGS]:
             self.report({"WARNING"}, warning)
         more = len(warnings) - _MOST_WARNINGS
         if more > 0:
             self.report({"WARNING"}, f"and {more} more warnings")
         if len(made) > 1:
-            return f"Imported {len(made)} files, each on its own armature"
-        motion = result[0]
+            left_out = f", {len(result.problems)} left out" if result.problems else ""
+            return f"Imported {len(made)} files, each on its own armature{left_out}"
+        motion = result.motions[0]
         joints = f"{len(motion.skeleton.parents)} joints"
         frames = f"{motion.num_frames} frames" if motion.num_frames else "rest pose"
         return f'Imported "{made[0].name}": {joints}, {frames}'

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .core import core
-from .errors import InputError
+from .errors import InputError, one_line
 from .file_cache import FileCache
 from .job import Cancelled, Job, Progress
 from .mapping import Mapped, last_mapped, mapped
@@ -59,6 +59,15 @@ class LoadedMotion:
 
 
 @dataclass(frozen=True)
+class Loaded:
+    """What came of the chosen files."""
+
+    motions: list[LoadedMotion]
+    problems: list[str]
+    """One line for each file that cannot be used."""
+
+
+@dataclass(frozen=True)
 class FileSummary:
     """Content of a motion file, shown before it is imported."""
 
@@ -76,9 +85,11 @@ class FileSummary:
 
 
 def import_job(paths: list[str], endings: tuple[str, ...], options: ImportOptions) -> Job:
-    """The job that reads motion files; its result is a list of LoadedMotion.
+    """The job that reads motion files; its result is Loaded.
 
-    An .asf that is chosen together with .amc files is used as their skeleton. Raises InputError.
+    One of several that cannot be used does not keep the others out; when none can, its error is the
+    job's. An .asf that is chosen together with .amc files is used as their skeleton. Raises
+    InputError.
     """
     core()
     chosen = _checked(paths, endings)
@@ -86,12 +97,17 @@ def import_job(paths: list[str], endings: tuple[str, ...], options: ImportOption
     motions = [path for path in chosen if path not in skeletons] or skeletons
     asf = skeletons[0] if len(skeletons) == 1 and motions != skeletons else None
 
-    def work(progress: Progress) -> list[LoadedMotion]:
-        loaded = []
+    def work(progress: Progress) -> Loaded:
+        loaded = Loaded([], [])
         for index, path in enumerate(motions):
             if not progress(index, len(motions), Path(path).name):
                 raise Cancelled("Cancelled")
-            loaded.append(load_motion(path, options, asf))
+            try:
+                loaded.motions.append(load_motion(path, options, asf))
+            except (ValueError, OSError) as error:
+                if not loaded.motions and index == len(motions) - 1:
+                    raise
+                loaded.problems.append(one_line(error))
         if not progress(len(motions), len(motions), ""):
             raise Cancelled("Cancelled")
         return loaded

@@ -241,11 +241,8 @@ def test_a_second_root_is_left_out_and_said(tmp_path):
     path = _bvh(tmp_path, HUMAN.replace("MOTION", second + "MOTION"))
     armature = _import_bvh(path)
     assert len(armature.data.bones) == 7
-    (loaded,) = (
-        addon("session.imported")
-        .import_job([str(path)], (".bvh",), addon("session.imported").ImportOptions())
-        .run()
-    )
+    imported = addon("session.imported")
+    (loaded,) = imported.import_job([str(path)], (".bvh",), imported.ImportOptions()).run().motions
     assert any("ROOT" in warning for warning in loaded.warnings)
 
 
@@ -371,9 +368,21 @@ def test_what_is_wrong_is_said_in_one_line(tmp_path):
     line = acclaim(tmp_path / "02_01.amc")
     assert "02_01.amc" in line
     assert ".asf" in line
-    files = [{"name": "gone.bvh"}, {"name": _bvh(tmp_path).name}]
-    several = {"directory": str(tmp_path), "files": files}
-    assert "gone.bvh" in error_of(lambda: bpy.ops.sparse_mocap.import_bvh(**several))
+    several = {"directory": str(tmp_path), "files": [{"name": "gone.bvh"}, {"name": "cut.bvh"}]}
+    assert "cut.bvh" in error_of(lambda: bpy.ops.sparse_mocap.import_bvh(**several))
+
+
+def test_a_bad_file_among_several_leaves_the_others_imported(tmp_path):
+    (tmp_path / "cut.bvh").write_text(HUMAN + "1 2 3\n")
+    names = [_bvh(tmp_path, name="a.bvh").name, "gone.bvh", "cut.bvh", _bvh(tmp_path).name]
+    imported = addon("session.imported")
+    paths = [str(tmp_path / name) for name in names]
+    loaded = imported.import_job(paths, (".bvh",), imported.ImportOptions()).run()
+    assert [motion.name for motion in loaded.motions] == ["a", "walk"]
+    assert ["gone.bvh" in loaded.problems[0], "cut.bvh" in loaded.problems[1]] == [True, True]
+    files = [{"name": name} for name in names]
+    bpy.ops.sparse_mocap.import_bvh(directory=str(tmp_path), files=files)
+    assert sorted(bpy.data.objects.keys()) == ["a", "walk"]
 
 
 def test_drops_are_offered_where_blender_takes_them():

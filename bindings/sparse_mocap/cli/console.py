@@ -155,4 +155,6 @@ def print_table(table: Table) -> None:
 
 def write_json(path: Path, value: Any) -> None:
     """Writes a JSON file atomically."""
-    write_text(path, json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+    text = json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    # Half characters, which file names may hold, become JSON's own escapes.
+    write_text(path, text.encode("utf-8", "backslashreplace").decode())

@@ -122,6 +122,11 @@ def build(
 @click.argument("path", metavar="DB.smdb", type=FilePath)
 @click.argument("sources", metavar="SOURCE...", type=FilePath, nargs=-1, required=True)
 @_output_option
+@click.option(
+    "--rebuild", is_flag=True,
+    help="Build everything anew, so that the skeleton is averaged over all bodies. The sources must"
+    " include the files that are in the database.",
+)  # fmt: skip
 @_import_options
 def add(path: Path, sources: tuple[Path, ...], output: Path | None, **options: Any) -> None:
     """Adds motion capture to a database.

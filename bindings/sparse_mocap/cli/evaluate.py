@@ -28,7 +28,7 @@ from ..evaluation import (
 from ..evaluation import evaluate as run_evaluation
 from ..methods import DEFAULT_METHOD, Experiment, method_info, methods, renamed_preset
 from .console import ProgressCallback, print_table, progress_bar, warn, write_json
-from .options import PAPER_SITES, FilePath, Sites, noise_option, seed_option, set_option
+from .options import PAPER_SITES, FilePath, OutputPath, Sites, noise_option, seed_option, set_option
 
 __all__ = ["evaluate"]
 
@@ -45,7 +45,7 @@ __all__ = ["evaluate"]
 @click.option(
     "--tests", metavar="GLOB", help="Files to test; by default one for each actor and class."
 )
-@click.option("--json", "json_path", type=FilePath, help="Write all results as JSON.")
+@click.option("--json", "json_path", type=OutputPath(), help="Write all results as JSON.")
 @click.option("--plots", type=FilePath, help="Write plots of the errors to this folder.")
 @click.option(
     "--method", "names", type=click.Choice([method.name for method in methods()]), multiple=True,

@@ -18,7 +18,7 @@ from .. import (
 from ..inspection import Inspection, inspect_motion
 from .console import print_table, progress_bar, write_json
 from .faults import Fault
-from .options import FilePath
+from .options import FilePath, OutputPath
 
 __all__ = ["inspect"]
 
@@ -30,16 +30,16 @@ __all__ = ["inspect"]
     help="Skeleton mapping to use instead of detecting the joints.",
 )  # fmt: skip
 @click.option(
-    "--save-mapping", metavar="MAP.json", type=FilePath,
+    "--save-mapping", metavar="MAP.json", type=OutputPath(),
     help="Write the detected skeleton mapping to a file, to edit and use with --mapping.",
 )  # fmt: skip
 @click.option(
     "--remember", is_flag=True, help="Use --mapping for all files with this skeleton from now on."
 )
 @click.option("--forget", is_flag=True, help="Forget the mapping remembered for this skeleton.")
-@click.option("--json", "json_path", type=FilePath, help="Also write everything as JSON.")
+@click.option("--json", "json_path", type=OutputPath(), help="Also write everything as JSON.")
 @click.option(
-    "--plot", type=FilePath,
+    "--plot", type=OutputPath(),
     help="Also draw six frames of each file, its own skeleton next to the standard one (.png).",
 )  # fmt: skip
 def inspect(

@@ -25,6 +25,7 @@ from .live_session import LiveSession
 from .live_view import view
 from .options import (
     FilePath,
+    OutputPath,
     body_option,
     method_choice,
     method_option,
@@ -53,7 +54,7 @@ _MORE_SENSORS_S = 1.0  # how long to wait for further sensors after the first sa
 @click.option(
     "--calibration", "calibration_path", type=FilePath, help="The sensors' calibration (.json)."
 )
-@click.option("--positions", type=FilePath, help="Also write the joint positions (.csv).")
+@click.option("--positions", type=OutputPath(), help="Also write the joint positions (.csv).")
 @click.option("--seconds", type=click.FloatRange(0.1), help="Stop after this time.")
 @click.option(
     "--attach", is_flag=False, flag_value=0, type=click.IntRange(min=0), metavar="[PID]",

@@ -18,6 +18,7 @@ from .console import warn
 
 __all__ = [
     "MethodChoice",
+    "OutputPath",
     "PositionAlongBone",
     "Setting",
     "Sites",
@@ -31,7 +32,23 @@ PAPER_SITES = "left_wrist,right_wrist,left_ankle,right_ankle"
 
 FilePath = click.Path(path_type=Path)
 
+_MOTION_ENDINGS = (".bvh", ".amc", ".asf")
+
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+class OutputPath(click.Path):
+    """A file to write that is no motion file, which a slip would cost its recording."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """Returns the path."""
+        path = Path(value)
+        if path.suffix.lower() in _MOTION_ENDINGS:
+            self.fail(f"'{path}' is the name of a motion file; choose another name", param, ctx)
+        return path
 
 
 class Sites(click.ParamType):  # type: ignore[type-arg]

@@ -28,6 +28,7 @@ from .console import progress_bar, warn, write_json
 from .options import (
     FilePath,
     MethodChoice,
+    OutputPath,
     Span,
     body_option,
     check_ending,
@@ -63,10 +64,10 @@ __all__ = ["body_of", "model_of", "reconstruct", "require_given"]
     "--gyroscopes/--no-gyroscopes", default=True, show_default=True,
     help="Also use the gravity direction, for sensors with gyroscopes (gx,gy,gz).",
 )  # fmt: skip
-@click.option("--positions", type=FilePath, help="Also write the joint positions (.csv).")
+@click.option("--positions", type=OutputPath(), help="Also write the joint positions (.csv).")
 @frame_option
 @click.option(
-    "--json", "json_path", type=FilePath, help="Also write a report on every frame as JSON."
+    "--json", "json_path", type=OutputPath(), help="Also write a report on every frame as JSON."
 )
 @position_along_bone_option
 @click.option(

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/base/files.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/base/system_files.hpp"
@@ -18,18 +21,33 @@ namespace fs = std::filesystem;
   throw fs::filesystem_error(action, path, std::error_code(errno, std::generic_category()));
 }
 
+constexpr char kTemporary[] = ".tmp.";
+
 fs::path temporary_beside(const fs::path& path) {
   static std::atomic<unsigned> counter{0};
   fs::path temporary = path;
-  temporary += ".tmp." + std::to_string(process_id()) + "." + std::to_string(counter++);
+  temporary += kTemporary + std::to_string(process_id()) + "." + std::to_string(counter++);
   return temporary;
+}
+
+// Whether a file name is one that temporary_beside gives for `target`.
+bool is_temporary_of(const fs::path& name, const fs::path& target) {
+  using Text = fs::path::string_type;
+  fs::path begin = target.filename();
+  begin += kTemporary;
+  const Text& text = name.native();
+  const auto is_number = [](Text::value_type c) { return (c >= '0' && c <= '9') || c == '.'; };
+  return text.size() > begin.native().size() && text.starts_with(begin.native()) &&
+         std::all_of(text.begin() + static_cast<Text::difference_type>(begin.native().size()),
+                     text.end(), is_number);
 }
 
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const fs::path& target) : path_(temporary_beside(target)) {
+  explicit TemporaryFile(const fs::path& target)
+      : target_(target), path_(temporary_beside(target)) {
     file_ = create_file(path_);
-    if (file_ == nullptr) throw_errno("cannot create file", path_);
+    if (file_ == nullptr) throw_errno("cannot create file", target_);
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
@@ -42,20 +60,21 @@ class TemporaryFile {
   void write(std::span<const std::byte> bytes) {
     if (bytes.empty()) return;
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size())
-      throw_errno("cannot write", path_);
+      throw_errno("cannot write", target_);
   }
 
-  void rename_to(const fs::path& target) {
-    if (std::fflush(file_) != 0 || !sync_file(file_)) throw_errno("cannot write", path_);
-    std::FILE* closing = file_;
-    file_ = nullptr;
-    if (std::fclose(closing) != 0) throw_errno("cannot write", path_);
-    replace_file(path_, target);
+  void rename_to_target() {
+    if (std::fflush(file_) != 0 || !sync_file(file_)) throw_errno("cannot write", target_);
+    try {
+      close_and_replace(std::exchange(file_, nullptr), path_, target_);
+    } catch (const fs::filesystem_error& error) {
+      throw fs::filesystem_error("cannot replace", target_, error.code());
+    }
     path_.clear();
   }
 
  private:
-  fs::path path_;
+  fs::path target_, path_;
   std::FILE* file_ = nullptr;
 };
 
@@ -93,8 +112,18 @@ void write_file_atomically(const fs::path& path,
                            std::span<const std::span<const std::byte>> pieces) {
   TemporaryFile temporary(path);
   for (const auto piece : pieces) temporary.write(piece);
-  temporary.rename_to(path);
+  temporary.rename_to_target();
   sync_folder(path.has_parent_path() ? path.parent_path() : fs::path("."));
+}
+
+void remove_abandoned_temporaries(const fs::path& path) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::error_code ignored;
+  std::vector<fs::path> found;
+  for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
+       entry.increment(ignored))
+    if (is_temporary_of(entry->path().filename(), path)) found.push_back(entry->path());
+  for (const auto& temporary : found) remove_unless_written(temporary);
 }
 
 void write_file_atomically(const fs::path& path, const std::string& text) {

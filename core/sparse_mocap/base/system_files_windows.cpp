@@ -119,7 +119,9 @@ std::FILE* create_file(const fs::path& path) {
 
 bool sync_file(std::FILE* file) { return _commit(_fileno(file)) == 0; }
 
-void replace_file(const fs::path& from, const fs::path& to) {
+// An open file can neither be renamed nor be removed by others.
+void close_and_replace(std::FILE* created, const fs::path& from, const fs::path& to) {
+  std::fclose(created);
   remove_replaced(to);
   for (int attempt = 1;; ++attempt) {
     if (rename(from, to, MOVEFILE_REPLACE_EXISTING)) return;
@@ -129,6 +131,23 @@ void replace_file(const fs::path& from, const fs::path& to) {
     if (replace_mapped(from, to)) return;
     Sleep(kPause_ms);  // somebody reads it: an indexer, an antivirus, another program
   }
+}
+
+void remove_unless_written(const fs::path& path) { DeleteFileW(path.c_str()); }
+
+// An open file cannot be replaced, so a file beside it is opened for this holder alone. The system
+// deletes it when its holder ends, however it ends.
+std::shared_ptr<const void> try_lock(const fs::path& path) {
+  fs::path beside = path;
+  beside += L".lock";
+  const bool exists = GetFileAttributesW(path.c_str()) != INVALID_FILE_ATTRIBUTES;
+  auto file = std::make_shared<const Handle>(
+      exists ? CreateFileW(beside.c_str(), GENERIC_WRITE, 0, nullptr, OPEN_ALWAYS,
+                           FILE_ATTRIBUTE_HIDDEN | FILE_FLAG_DELETE_ON_CLOSE, nullptr)
+             : INVALID_HANDLE_VALUE);
+  const DWORD error = file->is_valid() || !exists ? ERROR_SUCCESS : GetLastError();
+  const bool is_taken = error == ERROR_SHARING_VIOLATION || error == ERROR_DELETE_PENDING;
+  return is_taken ? nullptr : file;
 }
 
 void sync_folder(const fs::path&) {}  // MOVEFILE_WRITE_THROUGH did it

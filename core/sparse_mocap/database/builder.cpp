@@ -8,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "sparse_mocap/base/file_lock.hpp"
+#include "sparse_mocap/base/files.hpp"
 #include "sparse_mocap/database/clip_names.hpp"
 #include "sparse_mocap/database/importer.hpp"
 
@@ -33,6 +35,18 @@ void check_copies(double rate_hz, const std::vector<double>& tempos) {
   for (const double tempo : tempos)
     if (!(tempo >= 0.25 && tempo <= 4.0))
       throw ConfigError("a tempo must be between 0.25 and 4, got " + std::to_string(tempo));
+}
+
+// A slip of the shell or of a file dialog must not cost somebody a recording.
+void check_output(const fs::path& output) {
+  if (is_motion_file(output))
+    throw FormatError({output}, "is the name of a motion file", "name the database NAME.smdb");
+}
+
+// Held while a database is read, changed and replaced. Waiting can be cancelled.
+FileLock locked(const fs::path& database, const Progress& progress) {
+  return FileLock(database,
+                  [&] { progress.report(0, 0, "waiting for another program to finish"); });
 }
 
 // The copies to make: those at other tempos only as long as the database stays small.
@@ -125,6 +139,7 @@ BuildReport finished(Importer& importer, DatabaseContent& content, const json& i
     refuse_all(importer, report);
   remember(report, importer.files(), content.sources);
   content.build_info = with_counts(info, content);
+  remove_abandoned_temporaries(output);
   write_database(output, content);
   report.num_clips = static_cast<int>(content.clips.size());
   for (const auto& rows : content.clip_rows) report.num_frames += rows.num_frames();
@@ -138,12 +153,71 @@ bool matches(const Clip& clip, const std::string& pattern) {
          matches_glob(pattern, fs::path(clip.source).filename().string());
 }
 
+// How far the joints of a database's skeleton would move in rest, m, were it averaged with further
+// bodies.
+double averaging_change_m(const Skeleton& skeleton, double num_bodies,
+                          const std::vector<StandardBones>& further) {
+  const StandardBones held = bones_of(skeleton), other = averaged_bones(further);
+  const double weight = static_cast<double>(further.size());
+  StandardBones averaged;
+  for (std::size_t j = 0; j < averaged.size(); ++j)
+    averaged[j] = (num_bodies * held[j] + weight * other[j]) / (num_bodies + weight);
+  const auto before = rest_pose(skeleton), after = rest_pose(make_standard_skeleton(averaged));
+  double change = 0.0;
+  for (std::size_t j = 0; j < averaged.size(); ++j)
+    change = std::max(change, (after.end[j] - before.end[j]).norm());
+  return change;
+}
+
+void warn_about_new_bodies(const Importer& importer, const DatabaseContent& content,
+                           const json& info, std::vector<std::string>& warnings) {
+  constexpr double kWorthSaying_m = 1e-3;
+  const auto& bodies = importer.new_bodies();
+  if (bodies.empty()) return;
+  const double num_bodies = std::max(1.0, info.value("bodies", 1.0));
+  const double change = averaging_change_m(content.skeleton, num_bodies, bodies);
+  if (change < kWorthSaying_m) return;
+  warnings.push_back(
+      "the proportions of " + std::to_string(bodies.size()) +
+      " new bodies would change the database's averaged skeleton by up to " +
+      std::to_string(std::lround(1e3 * change)) +
+      " mm; 'database add --rebuild' with the folders of all files averages it anew");
+}
+
+// Puts what was said of the clips before over what their files' names say, not over new labels.
+void keep_labels(const DatabaseContent& old, const Importer& importer, const ImportOptions& options,
+                 DatabaseContent& content) {
+  std::map<SourceHashes, const Clip*> known;
+  for (const Clip& clip : old.clips)
+    known.emplace(SourceHashes{clip.source_hash, clip.skeleton_hash}, &clip);
+  std::set<std::string> labelled;
+  for (const auto& file : importer.files())
+    if (options.labels.contains(file.path)) labelled.insert(file.name);
+  for (Clip& clip : content.clips) {
+    const auto at = known.find({clip.source_hash, clip.skeleton_hash});
+    if (at == known.end() || labelled.contains(clip.source)) continue;
+    clip.actor = at->second->actor;
+    clip.motion_class = at->second->motion_class;
+    clip.origin = at->second->origin;
+    clip.license = at->second->license;
+  }
+}
+
+json build_info(const CopyOptions& copies, const ImportOptions& options, std::size_t num_bodies) {
+  return {{"mirror", copies.add_mirrored},
+          {"reverse", copies.add_reversed},
+          {"tempo_copies", copies.tempos},
+          {"exclude", options.exclude},
+          {"bodies", num_bodies}};
+}
+
 }  // namespace
 
 BuildReport build_database(const std::vector<fs::path>& sources, const fs::path& output,
                            const BuildOptions& options, const Progress& progress) {
   check(options);
   check_copies(options.rate_hz, options.tempo_copies);
+  check_output(output);
   const auto start = std::chrono::steady_clock::now();
   Importer importer(sources, options, progress);
   const auto bodies = importer.survey();
@@ -153,19 +227,16 @@ BuildReport build_database(const std::vector<fs::path>& sources, const fs::path&
   content.rate_hz = options.rate_hz;
   const CopyOptions copies = copies_of(options, importer.num_source_seconds(), importer.report());
   importer.import(content, copies);
-  const json info{{"mirror", copies.add_mirrored},
-                  {"reverse", copies.add_reversed},
-                  {"tempo_copies", copies.tempos},
-                  {"exclude", options.exclude},
-                  {"bodies", bodies.size()}};
-  return finished(importer, content, info, output, start);
+  return finished(importer, content, build_info(copies, options, bodies.size()), output, start);
 }
 
 BuildReport add_to_database(const fs::path& database, const std::vector<fs::path>& sources,
                             const fs::path& output, const ImportOptions& options,
                             const Progress& progress) {
   check(options);
+  check_output(output);
   const auto start = std::chrono::steady_clock::now();
+  const FileLock lock = locked(database, progress);
   DatabaseContent content = database_content(*MotionDatabase::open(database));
   if (content.site_names != all_site_names())
     throw FormatError({database}, "holds the readings of other sensor sites",
@@ -174,11 +245,41 @@ BuildReport add_to_database(const fs::path& database, const std::vector<fs::path
   Importer importer(sources, options, progress);
   importer.recognise(content);
   importer.import(content, copies);
-  return finished(importer, content, json::parse(content.build_info), output, start);
+  const json info = json::parse(content.build_info);
+  warn_about_new_bodies(importer, content, info, importer.report().warnings);
+  return finished(importer, content, info, output, start);
+}
+
+BuildReport rebuild_database(const fs::path& database, const std::vector<fs::path>& sources,
+                             const fs::path& output, const ImportOptions& options,
+                             const Progress& progress) {
+  check(options);
+  check_output(output);
+  const auto start = std::chrono::steady_clock::now();
+  const FileLock lock = locked(database, progress);
+  const DatabaseContent old = database_content(*MotionDatabase::open(database));
+  const CopyOptions copies = copies_in(old, database);
+  Importer importer(sources, options, progress);
+  const auto bodies = importer.survey();
+  if (const std::string missing = importer.first_missing(old); !missing.empty())
+    throw FormatError({database}, "holds '" + missing + "', which is not among the sources",
+                      "name the folders of all its files, or drop that clip first");
+  DatabaseContent content;
+  content.skeleton = make_standard_skeleton(averaged_bones(bodies));
+  content.rate_hz = copies.rate_hz;
+  importer.import(content, copies);
+  keep_labels(old, importer, options, content);
+  if (!old.further.tensors.empty())
+    importer.report().warnings.push_back(
+        "the models in the database are left out, since they belong to its old skeleton; train "
+        "them again");
+  return finished(importer, content, build_info(copies, options, bodies.size()), output, start);
 }
 
 int drop_from_database(const fs::path& database, const std::vector<std::string>& patterns,
                        const fs::path& output) {
+  check_output(output);
+  const FileLock lock(database);
   DatabaseContent content = database_content(*MotionDatabase::open(database));
   for (const auto& pattern : patterns)
     if (std::none_of(content.clips.begin(), content.clips.end(),
@@ -195,6 +296,7 @@ int drop_from_database(const fs::path& database, const std::vector<std::string>&
     throw FormatError({database}, "every clip would be dropped", "delete the file instead");
   json info = json::parse(content.build_info, nullptr, false);
   content.build_info = with_counts(info.is_object() ? info : json::object(), content);
+  remove_abandoned_temporaries(output);
   write_database(output, content);
   return static_cast<int>(num_before - content.clips.size());
 }

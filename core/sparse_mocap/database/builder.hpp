@@ -70,11 +70,20 @@ BuildReport build_database(const std::vector<std::filesystem::path>& sources,
 
 // Adds files to a database: on its own skeleton, at its own rate and with its own kinds of copies.
 // Rows that are there stay as they are; a file that is in already (by its hash) is not read; one
-// that changed since takes the place of its old clips. Errors as above.
+// that changed since takes the place of its old clips. Several at once wait for one another. A
+// warning says how far the averaged skeleton would change with the bodies added. Errors as above.
 BuildReport add_to_database(const std::filesystem::path& database,
                             const std::vector<std::filesystem::path>& sources,
                             const std::filesystem::path& output, const ImportOptions& options,
                             const Progress& progress = Progress());
+
+// Builds a database anew from its own files and others, all of which the sources must hold: the
+// skeleton is averaged over all bodies. Rate, copies, and labels that the new ones do not replace
+// stay. Errors as above; FormatError too when a file of the database is not among the sources.
+BuildReport rebuild_database(const std::filesystem::path& database,
+                             const std::vector<std::filesystem::path>& sources,
+                             const std::filesystem::path& output, const ImportOptions& options,
+                             const Progress& progress = Progress());
 
 // Drops the clips, copies too, whose name, source or source's file name matches one of the glob
 // patterns. Gives how many were dropped. Throws FormatError when a pattern matches nothing or

@@ -146,6 +146,7 @@ Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& ha
     std::vector<std::string> texts = mapping.warnings;
     const Motion motion = to_standard(read.motion, mapping, standard, &texts);
     out.skeleton = described(read.motion.skeleton, mapping);
+    out.bones = mapping.bones;
     Clip clip = clip_of(file, hashes, read.motion);
     clip.skeleton = out.skeleton.id;
     for (const auto& warning : read.warnings) {

@@ -37,6 +37,7 @@ struct ImportedFile {
   std::vector<Clip> clips;  // the motion itself first, then its copies
   std::vector<DatabaseRows> clip_rows;
   SourceSkeleton skeleton;
+  StandardBones bones;                // the body's own, m
   std::vector<std::string> warnings;  // one line each
 };
 

@@ -164,6 +164,14 @@ void Importer::recognise(DatabaseContent& content) {
                 [&](std::size_t i) { show(files_[i]); });
 }
 
+std::string Importer::first_missing(const DatabaseContent& content) const {
+  std::set<SourceHashes> found;
+  for (const auto& [hashes, file] : first_of_hash_) found.insert(hashes);
+  for (const Clip& clip : content.clips)
+    if (!found.contains({clip.source_hash, clip.skeleton_hash})) return clip.source;
+  return "";
+}
+
 // --- Second pass ---------------------------------------------------------------------------------
 
 // What later files must not repeat; clips that are about to go may be.
@@ -176,8 +184,18 @@ void Importer::know_clips(const DatabaseContent& content) {
   }
 }
 
+void Importer::know_body(const std::string& actor, const StandardBones& bones) {
+  if (old_actors_.contains(actor)) return;
+  const auto is_same = [&](const StandardBones& known) {
+    return body_key("", known) == body_key("", bones);
+  };
+  if (std::none_of(new_bodies_.begin(), new_bodies_.end(), is_same)) new_bodies_.push_back(bones);
+}
+
 void Importer::import(DatabaseContent& content, const CopyOptions& copies) {
   const std::size_t num_old_clips = content.clips.size();
+  for (const Clip& clip : content.clips)
+    if (!clip.actor.empty()) old_actors_.insert(clip.actor);
   if (!options_.keep_duplicates) know_clips(content);
   std::uint64_t num_bytes = 0;
   for (const auto& pending : pending_) num_bytes += files_[pending.file].num_bytes;
@@ -222,6 +240,7 @@ void Importer::take_in(const SourceFile& file, ImportedFile imported, DatabaseCo
     skeletons.push_back(imported.skeleton);
   for (std::size_t c = 0; c < imported.clips.size(); ++c) {
     label(file, imported.clips[c]);
+    if (c == 0) know_body(imported.clips[c].actor, imported.bones);
     content.clips.push_back(std::move(imported.clips[c]));
     content.clip_rows.push_back(std::move(imported.clip_rows[c]));
   }

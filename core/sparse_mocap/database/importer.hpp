@@ -31,6 +31,11 @@ class Importer {
   // Second pass.
   void import(DatabaseContent& content, const CopyOptions& copies);
 
+  // After survey: the first file of a database that is not among the sources, "" when all are.
+  std::string first_missing(const DatabaseContent& content) const;
+  // After import: the bodies of actors that were not in the database before, each once.
+  const std::vector<StandardBones>& new_bodies() const { return new_bodies_; }
+
   double num_source_seconds() const { return num_source_seconds_; }
   const std::vector<SourceFile>& files() const { return files_; }
   BuildReport& report() { return report_; }
@@ -49,6 +54,7 @@ class Importer {
   void leave_out(const SourceFile& file, const std::string& reason);
   bool is_repeated(std::size_t file, const SourceHashes& hashes);
   void know_clips(const DatabaseContent& content);
+  void know_body(const std::string& actor, const StandardBones& bones);
   void take_in(const SourceFile& file, ImportedFile imported, DatabaseContent& content);
   void remove_replaced(DatabaseContent& content, std::size_t num_old_clips);
 
@@ -60,6 +66,8 @@ class Importer {
   std::set<std::string> replaced_;  // sources whose old clips go, once the new ones are there
   DuplicateFinder finder_;
   std::vector<std::string> known_sources_;  // by the ids of finder_
+  std::set<std::string> old_actors_;        // of the clips that were there before
+  std::vector<StandardBones> new_bodies_;
   double num_source_seconds_ = 0.0;
   std::size_t done_before_ = 0;  // files of the passes before
   ProgressReport counts_;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/base/file_lock.hpp"
 #include "sparse_mocap/base/mapped_file.hpp"
 #include "sparse_mocap/database/container.hpp"
 #include "sparse_mocap/database/motion_database.hpp"
@@ -48,6 +49,7 @@ int version_from(const std::string& text, const Container& container) {
 // Changes the further content of a database file, all else in it being kept as it lies there.
 void change_database(const std::filesystem::path& path,
                      const std::function<void(const MotionDatabase&, SafetensorsView&)>& change) {
+  const FileLock lock(path);
   const auto bytes = map_file(path);
   const auto database = MotionDatabase::from_bytes(bytes, path);
   const Container container(bytes->view(), path, kDatabaseFormat);

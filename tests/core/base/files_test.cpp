@@ -71,6 +71,31 @@ TEST(WriteFileAtomically, LeavesNothingBehindWhenItFails) {
   EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"taken"});
 }
 
+TEST(WriteFileAtomically, NamesTheFileThatWasAskedFor) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder / "taken/by a folder");
+  for (const char* name : {"taken", "none/file"}) {
+    try {
+      write_file_atomically(folder / name, std::string("x"));
+      ADD_FAILURE() << name;
+    } catch (const fs::filesystem_error& error) {
+      EXPECT_EQ(error.path1(), folder / name);
+    }
+  }
+}
+
+TEST(RemoveAbandonedTemporaries, LeavesWhatIsNoneOfThisFile) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.smdb.tmp.1.0", "a.smdb.tmp.77.12", "a.smdb", "b.smdb.tmp.1.0",
+                           "a.smdb.tmp", "a.smdb.tmp.", "a.smdb.tmp.1.0.bvh", "xa.smdb.tmp.1.0"})
+    folder.write(name, "x");
+  remove_abandoned_temporaries(folder / "a.smdb");
+  EXPECT_EQ(names_in(folder.path()),
+            (std::vector<std::string>{"a.smdb", "a.smdb.tmp", "a.smdb.tmp.", "a.smdb.tmp.1.0.bvh",
+                                      "b.smdb.tmp.1.0", "xa.smdb.tmp.1.0"}));
+  remove_abandoned_temporaries(folder / "no such folder/a.smdb");
+}
+
 TEST(MapFile, ShowsTheFileAsItWasWhenOpened) {
   const TemporaryFolder folder;
   const auto path = folder.write("file", "the old content");
