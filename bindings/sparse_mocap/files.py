@@ -17,10 +17,11 @@ _DENIED_FOR_S = 1.0
 
 
 @contextmanager
-def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
+def replaced(path: str | os.PathLike[str], *, is_private: bool = False) -> Iterator[Path]:
     """Yields a temporary path to write to, which replaces ``path`` when the block succeeds.
 
-    If the block raises, ``path`` is unchanged and nothing is left behind.
+    If the block raises, ``path`` is unchanged and nothing is left behind. A new file that
+    is_private can be read by its user alone.
     """
     target = Path(path)
     if target.is_dir():
@@ -35,21 +36,21 @@ def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
     temporary = Path(name)
     try:
         yield temporary
-        _replace(temporary, target)
+        _replace(temporary, target, 0o600 if is_private else 0o666 & ~_umask())
     except BaseException:
         with suppress(OSError):
             temporary.unlink()
         raise
 
 
-def write_text(path: str | os.PathLike[str], text: str) -> None:
-    """Writes UTF-8 text atomically, keeping the line ends in ``text``."""
-    with replaced(path) as temporary:
+def write_text(path: str | os.PathLike[str], text: str, *, is_private: bool = False) -> None:
+    """Writes UTF-8 text atomically, keeping the line ends in ``text``; is_private as above."""
+    with replaced(path, is_private=is_private) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="")
 
 
-def _replace(temporary: Path, target: Path) -> None:
-    mode = target.stat().st_mode if target.exists() else 0o666 & ~_umask()
+def _replace(temporary: Path, target: Path, new_mode: int) -> None:
+    mode = target.stat().st_mode if target.exists() else new_mode
     with temporary.open("r+b") as file:  # Windows syncs no file that is open for reading alone
         os.fsync(file.fileno())
     temporary.chmod(mode & 0o777)

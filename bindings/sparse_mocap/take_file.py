@@ -97,7 +97,7 @@ def write_columns(
         row_format % (time, name, *row)
         for time, name, row in zip(times_s.tolist(), sensors.tolist(), rows, strict=True)
     ]
-    write_text(path, "\n".join(lines) + "\n")
+    write_text(path, "\n".join(lines) + "\n", is_private=True)
 
 
 def _checked_header(path: Path, line: int, text: str) -> list[str]:

@@ -126,6 +126,10 @@ class LiveSession:
 
         return self._ask(stop)
 
+    def tell_saved(self, number: int) -> Future[Any]:
+        """Say that a recording was saved, so that the capture need not keep it."""
+        return self._ask(lambda client: client.tell_saved(number))
+
     def _ask(self, request: Callable[[Any], Any]) -> Future[Any]:
         future: Future[Any] = Future()
         if not self._state.is_connected or not self.is_running:

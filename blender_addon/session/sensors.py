@@ -106,6 +106,7 @@ def save_take_job(
     def work(progress: Progress) -> SavedTake:
         logs, number = answer_of(session.stop_recording(), ANSWER_WITHIN_S)
         path, warnings = _save(module, logs, number, folder)
+        session.tell_saved(number)
         last_takes[:] = [path]
         if not database_path:
             return SavedTake(path, warnings, None, "choose a motion database first")

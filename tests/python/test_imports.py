@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -213,3 +215,77 @@ def test_the_command_names_sites(cli: Cli, tmp_path: Path) -> None:
     assert wrong.exit_code == 1
     assert "it has 'phone'" in wrong.output
     assert cli("import", tmp_path / "none.csv", "-o", out).exit_code == 1
+
+
+def zip_of(path: Path, name: str, text: bytes) -> Path:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(name, text)
+    return path
+
+
+def peak_mb(recording: Path) -> float:
+    """The memory that refusing a recording takes, in a process of its own."""
+    script = (
+        "import resource, sys\nfrom sparse_mocap.imports import RecordingError, read_recording\n"
+        "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "try:\n    read_recording(sys.argv[1])\nexcept RecordingError as error:\n"
+        "    assert len(str(error)) < 400, 'long'\nelse:\n    sys.exit(3)\n"
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script, str(recording)], capture_output=True, text=True, check=True
+    )
+    return int(done.stdout) / 1024
+
+
+@pytest.mark.parametrize(
+    "text",
+    [b"0" * 900_000_000, b"1\n" * 30_000_000, b'"' * 50_000_000],
+    ids=["a line", "lines", "quotes"],
+)
+def test_a_zip_that_unpacks_to_very_much_is_refused_in_little_memory(
+    tmp_path: Path, text: bytes
+) -> None:
+    assert peak_mb(zip_of(tmp_path / "a.zip", "Raw Data.csv", text)) < 300
+
+
+@pytest.mark.parametrize(
+    "row",
+    [b"0,0,0,9.8\n", b"0" * 140_000 + b"\n", b"," * 5000 + b"\n"],
+    ids=["many", "long", "wide"],
+)
+def test_a_file_beyond_the_limits_is_refused(tmp_path: Path, row: bytes) -> None:
+    path = tmp_path / "Raw Data.csv"
+    head = b"" if row.startswith(b",") else b"\n"
+    path.write_bytes(PHYPHOX.encode() + head + row * (4_100_000 if len(row) < 50 else 1))
+    with pytest.raises(RecordingError, match=r"lines|columns|not a table") as caught:
+        read_recording(path)
+    assert str(path) in str(caught.value)
+
+
+def test_a_damaged_or_locked_zip_is_refused(tmp_path: Path) -> None:
+    path = zip_of(tmp_path / "a.zip", "Raw Data.csv", b"1,2\n" * 1000)
+    whole = path.read_bytes()
+    path.write_bytes(whole[:40] + b"\xff" * 20 + whole[60:])
+    with pytest.raises(RecordingError, match="cannot be unpacked"):
+        read_recording(path)
+    locked = bytearray(whole)
+    for at in (6, whole.index(b"PK\x01\x02") + 8):
+        locked[at] |= 1  # encrypted
+    path.write_bytes(locked)
+    with pytest.raises(RecordingError, match="cannot be unpacked"):
+        read_recording(path)
+
+
+def test_what_is_not_a_file_is_not_read_for_ever() -> None:
+    with pytest.raises(RecordingError, match="not a file"):
+        read_recording("/dev/zero")
+
+
+def test_empty_lines_in_a_table_are_told_unless_they_end_it(tmp_path: Path) -> None:
+    path = tmp_path / "Raw Data.csv"
+    path.write_text(PHYPHOX + "\n0,0,0,9.8\n0.01,0,0,9.8\n\n,,\n")
+    assert len(read_recording(path).sensors["phone"].times_s) == 2
+    path.write_text(PHYPHOX + "\n0,0,0,9.8\n\n0.01,0,0,9.8\n")
+    with pytest.raises(RecordingError, match=r":3: expected 4 cells"):
+        read_recording(path)

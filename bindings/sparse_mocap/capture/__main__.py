@@ -8,6 +8,7 @@ from the terminal and keeps running while it records, even if the client ends.
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import signal
 import sys
@@ -21,6 +22,7 @@ from .server import Server
 
 def main(folder: Path) -> int:
     """Captures until no client is attached and nothing is recorded."""
+    os.umask(0o077)  # what sensors measured is nobody else's
     config = CaptureConfig.from_json(json.loads((folder / CONFIG_NAME).read_text("utf-8")))
     recorder = Recorder(folder, config)
     server = Server(recorder)

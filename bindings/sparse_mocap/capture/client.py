@@ -18,7 +18,8 @@ from typing import Any
 from ..files import write_text
 from .config import CONFIG_NAME, DEFAULT_BAUD, CaptureConfig, LinkConfig
 from .drivers import make_parser
-from .errors import CaptureError
+from .errors import CaptureError, recover_command
+from .runtime_folder import runtime_folder
 from .sample_log import SampleLogReader, Samples
 from .session import Connection, Session, read_session, session_path, sessions
 
@@ -122,17 +123,23 @@ class CaptureClient:
         """Stops the recording."""
         self._ask("stop_recording")
 
-    def leave(self, *, is_kept: bool = False) -> bool:
+    def tell_saved(self, number: int) -> None:
+        """Says that a recording was saved as a take.
+
+        A capture removes its folder at its end when all of its recordings were saved.
+        """
+        self._ask("saved", number=number)
+
+    def leave(self) -> bool:
         """Detaches; returns whether that ended the capture, after waiting for its end.
 
-        It continues while other clients are attached or a recording is running. is_kept: the
-        recording was saved elsewhere, so the capture may remove its folder.
+        It continues while other clients are attached or a recording is running.
         """
-        ends = bool(self._ask("leave", is_kept=is_kept)["ends"])
+        answer = self._ask("leave")
         self.close()
-        if ends:
-            self._wait_for_end()
-        return ends
+        if answer["ends"]:
+            self._wait_for_end(is_removed=answer["is_removed"])
+        return bool(answer["ends"])
 
     def stop(self) -> None:
         """Ends the capture, even with other clients, and waits for its end."""
@@ -156,9 +163,11 @@ class CaptureClient:
     ) -> None:
         self.close()
 
-    def _wait_for_end(self) -> None:
+    def _wait_for_end(self, *, is_removed: bool = False) -> None:
+        """Waits until the session file is gone; is_removed: and the capture's folder."""
         end = time.perf_counter() + START_TIMEOUT_S
-        while session_path(self.session.pid).exists() and time.perf_counter() < end:
+        waits_for = [session_path(self.session.pid), *([self.folder] if is_removed else [])]
+        while any(path.exists() for path in waits_for) and time.perf_counter() < end:
             time.sleep(0.02)
 
     def _ask(self, request: str, **arguments: Any) -> dict[str, Any]:
@@ -166,8 +175,8 @@ class CaptureClient:
             return self._connection.ask(request, **arguments)
         except (OSError, ValueError) as error:
             raise CaptureError(
-                f"the capture process {self.session.pid} has ended; what it received is in "
-                f"{self.session.folder}"
+                f"the capture process {self.session.pid} has ended; save what it received with: "
+                f"{recover_command(self.session.folder)}"
             ) from error
 
 
@@ -180,11 +189,12 @@ def start_capture(config: CaptureConfig, folder: Path) -> CaptureClient:
     importlib.import_module("serial")
     for link in config.links:
         make_parser(link.driver, link.options)
+    runtime_folder()
     folder = folder.absolute()
-    folder.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     if any(folder.iterdir()):
         raise CaptureError(f"{folder}: the folder is not empty; choose another one")
-    write_text(folder / CONFIG_NAME, json.dumps(config.as_json()))
+    write_text(folder / CONFIG_NAME, json.dumps(config.as_json()), is_private=True)
     process = _launched(folder)
     end = time.perf_counter() + START_TIMEOUT_S
     while time.perf_counter() < end and process.poll() is None:

@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
-__all__ = ["CaptureError", "LogError", "PortError", "RecordingError"]
+import os
+import shlex
+
+__all__ = ["CaptureError", "LogError", "PortError", "RecordingError", "recover_command"]
 
 
 class CaptureError(Exception):
@@ -20,3 +23,8 @@ class LogError(CaptureError):
 
 class RecordingError(CaptureError):
     """A recording cannot be converted to a take."""
+
+
+def recover_command(folder: str | os.PathLike[str]) -> str:
+    """The command that saves what a capture received, from the folder of its logs."""
+    return f"sparse-mocap record --recover {shlex.quote(os.fspath(folder))} -o TAKE.csv"

@@ -38,6 +38,7 @@ from typing import Any, BinaryIO
 
 __all__ = [
     "Kind",
+    "LogFormatError",
     "RawLogWriter",
     "Record",
     "check_magic",
@@ -56,6 +57,13 @@ _BEGIN = b"\xf5\x4c"
 _HEAD = struct.Struct("<BBIq")
 _CHECK = struct.Struct("<I")
 _LONGEST_PAYLOAD = 1 << 20
+_MOST_DAMAGED = 1 << 30
+"""Bytes with a wrong checksum, counted again for each record that they may be part of; a log with
+more of them was not damaged but made up."""
+
+
+class LogFormatError(ValueError):
+    """A file is not a log of this version; str() names the file."""
 
 
 class Kind(IntEnum):
@@ -170,35 +178,49 @@ def read_log(folder: Path) -> Iterator[Record]:
 
 
 def check_magic(path: Path, begin: bytes, magic: bytes, what: str) -> None:
-    """Raises ValueError unless a file begins with these bytes, the last of which is its version."""
+    """Raises LogFormatError unless a file begins with these bytes; the last is the version."""
     if begin == magic:
         return
     if len(begin) == len(magic) and begin[:-1] == magic[:-1]:
         version = begin[-1:].decode("ascii", "replace")
-        raise ValueError(
+        raise LogFormatError(
             f"{path}: is a {what} of format version {version!r}, and this program reads version"
             f" {magic[-1:].decode()!r}; use the Sparse Mocap that recorded it"
         )
-    raise ValueError(f"{path}: is not a {what} of a capture")
+    raise LogFormatError(f"{path}: is not a {what} of a capture")
 
 
 def read_records(path: Path) -> Iterator[Record]:
     """Yields the records of a log, even one that is being written or is incomplete.
 
-    Raises ValueError when the file is not a raw log, and OSError.
+    Raises LogFormatError when the file is not a raw log, and OSError.
     """
     with open(path, "rb") as file:
         check_magic(path, file.read(len(MAGIC)), MAGIC, "raw log")
-        yield from _records(file)
+        yield from _records(file, _Damage(path))
 
 
-def _records(file: BinaryIO) -> Iterator[Record]:
+class _Damage:
+    """Counts what was checked in vain."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._num_bytes = 0
+
+    def add(self, num_bytes: int) -> None:
+        """Raises LogFormatError when it is too much."""
+        self._num_bytes += num_bytes
+        if self._num_bytes > _MOST_DAMAGED:
+            raise LogFormatError(f"{self._path}: is too damaged to be read; use a copy of the log")
+
+
+def _records(file: BinaryIO, damage: _Damage) -> Iterator[Record]:
     pending = b""
     while block := file.read(1 << 16):
         pending += block
         at = 0
         while True:
-            record, end = _record_at(pending, at)
+            record, end = _record_at(pending, at, damage)
             if record is not None:
                 yield record
             elif end == at:
@@ -207,13 +229,13 @@ def _records(file: BinaryIO) -> Iterator[Record]:
         pending = pending[at:]
     # The length of an incomplete record may span complete records after it.
     for at in _begins(pending, 1):
-        record, _ = _record_at(pending, at)
+        record, _ = _record_at(pending, at, damage)
         if record is not None:
-            yield from _records(io.BytesIO(pending[at:]))
+            yield from _records(io.BytesIO(pending[at:]), damage)
             return
 
 
-def _record_at(data: bytes, at: int) -> tuple[Record | None, int]:
+def _record_at(data: bytes, at: int, damage: _Damage) -> tuple[Record | None, int]:
     """Returns the record at ``at`` and its end, or None and where to continue the search.
 
     The latter is ``at`` itself while more bytes are needed.
@@ -232,6 +254,7 @@ def _record_at(data: bytes, at: int) -> tuple[Record | None, int]:
     if len(data) < end + _CHECK.size:
         return None, at
     if _CHECK.unpack_from(data, end)[0] != zlib.crc32(data[body:end]):
+        damage.add(length)
         return None, at + 1
     return Record(Kind(kind), link, arrival_ns, data[payload:end]), end + _CHECK.size
 

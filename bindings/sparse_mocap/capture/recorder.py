@@ -15,7 +15,7 @@ import numpy as np
 
 from .config import CaptureConfig
 from .decoder import Decoder
-from .errors import LogError
+from .errors import LogError, recover_command
 from .link import Arrived, Link, State
 from .raw_log import Kind, Record, sent_by
 from .rolling_log import RollingLog
@@ -59,8 +59,7 @@ class Recorder:
         self._rates: deque[tuple[float, dict[int, int]]] = deque(maxlen=_RATE_WINDOW)
         self.recording: Recording | None = None
         self.num_recordings = 0
-        self.may_be_removed = config.is_temporary
-        """Whether the folder is not needed: nothing was recorded, or it was saved elsewhere."""
+        self._unsaved: set[int] = set()
         self.links = [Link(index, link, self) for index, link in enumerate(config.links)]
 
     def start(self) -> None:
@@ -146,8 +145,8 @@ class Recorder:
                 self.recording = Recording(self.num_recordings, now, None, self._log.num_samples)
                 self._raw.begin_recording()
                 self._event(0, {"event": "recording", "number": self.num_recordings})
+                self._unsaved.add(self.num_recordings)
                 self.num_recordings += 1
-                self.may_be_removed = False
             self.recording.until_ns = None if seconds is None else now + int(seconds * 1e9)
             return self._recording_json()
 
@@ -155,6 +154,16 @@ class Recorder:
         """Stops the recording, if there is one."""
         with self._lock:
             self._stop_recording()
+
+    def tell_saved(self, number: int) -> None:
+        """A recording was saved as a take."""
+        with self._lock:
+            self._unsaved.discard(number)
+
+    @property
+    def may_be_removed(self) -> bool:
+        """Whether the folder is not needed at the end: whatever was recorded was saved."""
+        return not self._unsaved and (self.config.is_temporary or self.num_recordings > 0)
 
     def status(self) -> dict[str, Any]:
         """The status of the capture, as a JSON object."""
@@ -180,13 +189,17 @@ class Recorder:
             raise self._log_error(error) from error
 
     def _log_error(self, error: OSError) -> LogError:
-        return LogError(f"{self.folder}: {error.strerror or error}; free some disk space")
+        return LogError(
+            f"{self.folder}: {error.strerror or error}; free some disk space, then save what was "
+            f"received with: {recover_command(self.folder)}"
+        )
 
     def _stop_recording(self) -> None:
         if self.recording is not None:
-            self._event(0, {"event": "recording_end", "number": self.recording.number})
+            number, self.recording = self.recording.number, None
+            with suppress(LogError):  # a full disk is reported by arrived(); the log ends here
+                self._event(0, {"event": "recording_end", "number": number})
             self._raw.end_recording()
-            self.recording = None
 
     def _recording_json(self) -> dict[str, Any]:
         assert self.recording is not None

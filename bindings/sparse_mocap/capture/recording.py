@@ -15,7 +15,7 @@ from ..take import SensorRecord, Take
 from .config import CaptureConfig
 from .decoder import Decoder
 from .errors import RecordingError
-from .raw_log import BEGUN, FILE_NAME, Kind, Record, read_log
+from .raw_log import BEGUN, FILE_NAME, Kind, LogFormatError, Record, read_log
 from .sample_log import SAMPLE, Samples
 
 __all__ = ["Gap", "RecordedTake", "recording_to_take"]
@@ -166,8 +166,15 @@ def _replayed(folder: Path, sites: tuple[str, ...]) -> _Replay:
                 replay = _Replay(config, Decoder(config))
             if replay is not None:
                 replay.replay(record)
-    except ValueError as error:
+    except OSError:
+        raise
+    except LogFormatError as error:
         raise RecordingError(str(error)) from error
+    except Exception as error:  # a log may contain anything
+        raise RecordingError(
+            f"{folder / FILE_NAME}: its content is not that of a capture "
+            f"({type(error).__name__}); use the log that the capture wrote"
+        ) from error
     if replay is None:
         raise RecordingError(f"{folder / FILE_NAME}: the log is empty; record again")
     return replay

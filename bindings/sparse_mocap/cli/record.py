@@ -66,8 +66,7 @@ def record(
         return
     if attach is not None:
         with attached(attach) as client:
-            _write(output, _recorded(client, seconds, sites))
-            _leave(client, folder)
+            _save(client, output, seconds, sites)
         return
     config = config_of(ports, driver, baud, options, sites)
     client = _started(config, folder)
@@ -77,17 +76,17 @@ def record(
         client.stop()
         shutil.rmtree(folder, ignore_errors=True)
         raise
-    _write(output, _recorded(client, seconds, sites))
-    _leave(client, folder)
+    _save(client, output, seconds, sites)
 
 
-def _leave(client: CaptureClient, folder: Path) -> None:
-    """Detaches from the capture; removes its folder if it was made for this take."""
-    is_ours = client.folder == folder
-    if client.leave(is_kept=is_ours):
-        if is_ours:
-            shutil.rmtree(folder, ignore_errors=True)  # the process may remove it too
-    else:
+def _save(
+    client: CaptureClient, output: Path, seconds: float | None, sites: tuple[str, ...] | None
+) -> None:
+    """Records and writes the take; a capture that nobody needs then ends without its folder."""
+    number = _recorded(client, seconds)
+    _write(output, recording_to_take(client.folder, number, sites or ()))
+    client.tell_saved(number)
+    if not client.leave():
         warn([f"capture process {client.session.pid} keeps running: other programs are attached"])
 
 
@@ -120,16 +119,14 @@ def attached(pid: int) -> CaptureClient:
     return CaptureClient(chosen[0])
 
 
-def _recorded(
-    client: CaptureClient, seconds: float | None, sites: tuple[str, ...] | None
-) -> RecordedTake:
-    """Records until Ctrl-C or the end, and returns the take."""
+def _recorded(client: CaptureClient, seconds: float | None) -> int:
+    """Records until Ctrl-C or the end, and returns the recording's number."""
     running = client.status()["recording"]
     number = running["number"] if running and seconds is None else client.record(seconds)["number"]
     with interrupted() as stop, status_line() as show:
         _follow(client, stop, show)
     client.stop_recording()
-    return recording_to_take(client.folder, number, sites or ())
+    return int(number)
 
 
 def _follow(client: CaptureClient, stop: threading.Event, show: Any) -> None:

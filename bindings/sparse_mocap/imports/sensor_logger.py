@@ -83,7 +83,7 @@ def _is_of_an_iphone(texts: list[Text]) -> bool:
     for text in texts:
         if text.name.lower() == "metadata" and len(text.lines) > 1:
             table = read_table(text, 0, ",")
-            metadata = dict(zip(table.header, table.rows[0], strict=True))
+            metadata = dict(zip(table.header, table.first_row, strict=True))
             is_standardised = metadata.get("standardisation", "false").strip().lower() == "true"
             return metadata.get("platform", "").strip().lower() == "ios" and not is_standardised
     return False

@@ -4,8 +4,11 @@
 from __future__ import annotations
 
 import csv
+import math
 import os
 import zipfile
+import zlib
+from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,7 +35,12 @@ Floats = NDArray[np.float64]
 
 _ENDINGS = (".csv", ".txt", ".json")
 _MOST_FILES = 500
-_MOST_BYTES = 1 << 30
+_MOST_BYTES = 400_000_000
+_MOST_LINES = 4_000_000
+"""Of all files of a recording; at 100 Hz, eleven hours of one sensor."""
+_MOST_COLUMNS = 256
+_LARGEST_RATIO = 100
+"""Of a zip's text to the zip; numbers are compressed to a tenth."""
 
 
 class RecordingError(TableError):
@@ -54,14 +62,18 @@ class Text:
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of cells under a header."""
+    """The numbers under a header."""
 
     path: str
     header: list[str]
-    rows: list[list[str]]
+    values: Floats
+    """(T, C); NaN for empty cells and for those that are not numbers."""
+    words: dict[int, tuple[int, str]]
+    """By column, the row and text of the first cell that is not a number."""
+    first_row: list[str]
+    """The first row's texts."""
     first_line: int
     """Line number of the first row in the file, from 1."""
-    has_decimal_comma: bool = False
 
     def has(self, *names: str) -> bool:
         """Whether the table has all these columns."""
@@ -70,20 +82,14 @@ class Table:
     def column(self, name: str) -> Floats:
         """Returns a column's numbers, NaN for empty cells. Raises RecordingError."""
         at = self.header.index(name)
-        values = np.empty(len(self.rows))
-        for row, cells in enumerate(self.rows):
-            text = cells[at].strip()
-            if self.has_decimal_comma:
-                text = text.replace(",", ".")
-            try:
-                values[row] = float(text) if text else np.nan
-            except ValueError:
-                raise RecordingError(
-                    self.path,
-                    self.first_line + row,
-                    f"{name} is {text[:40]!r}, which is not a number",
-                ) from None
-        return values
+        if at in self.words:
+            row, text = self.words[at]
+            raise RecordingError(
+                self.path,
+                self.first_line + row,
+                f"{name} is {text[:40]!r}, which is not a number",
+            )
+        return np.array(self.values[:, at])
 
     def columns(self, *names: str) -> Floats:
         """Returns several columns' numbers, (T, C)."""
@@ -91,42 +97,110 @@ class Table:
 
 
 def read_texts(path: str | os.PathLike[str]) -> list[Text]:
-    """Returns the text files of a recording (a file, folder or zip), sorted by name."""
+    """Returns the text files of a recording (a file, folder or zip), sorted by name.
+
+    Raises RecordingError when there is more than a recording has, before it is read.
+    """
     source = Path(path)
+    limits = _Limits(source)
     if source.is_dir():
         files = sorted(file for file in source.rglob("*") if file.suffix.lower() in _ENDINGS)
-        _check_size(source, len(files), sum(file.stat().st_size for file in files))
-        return [_text(str(file), file.read_bytes()) for file in files]
-    if zipfile.is_zipfile(source):
-        with zipfile.ZipFile(source) as archive:
-            infos = [info for info in archive.infolist() if _is_text_name(info.filename)]
-            _check_size(source, len(infos), sum(info.file_size for info in infos))
-            infos.sort(key=lambda info: info.filename)
-            return [_text(f"{source}/{info.filename}", archive.read(info)) for info in infos]
-    _check_size(source, 1, source.stat().st_size)
-    return [_text(str(source), source.read_bytes())]
+        files = [file for file in files if file.is_file()]
+        limits.check_size(len(files), sum(file.stat().st_size for file in files))
+        return [limits.text(str(file), file.read_bytes()) for file in files]
+    if not source.is_file():
+        raise RecordingError(source, 0, "is not a file or folder; choose a recording")
+    if not zipfile.is_zipfile(source):
+        limits.check_size(1, source.stat().st_size)
+        return [limits.text(str(source), source.read_bytes())]
+    try:
+        return _zipped_texts(source, limits)
+    except (zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError, EOFError) as error:
+        raise RecordingError(source, 0, f"cannot be unpacked ({error}); export it again") from error
+
+
+def _zipped_texts(source: Path, limits: _Limits) -> list[Text]:
+    with zipfile.ZipFile(source) as archive:
+        infos = [info for info in archive.infolist() if _is_text_name(info.filename)]
+        num_bytes = sum(info.file_size for info in infos)
+        limits.check_size(len(infos), num_bytes)
+        if num_bytes > _LARGEST_RATIO * source.stat().st_size:
+            raise RecordingError(
+                source, 0, f"unpacks to {num_bytes} bytes, more than a recording would; "
+                "unpack it and choose the folder"
+            )  # fmt: skip
+        infos.sort(key=lambda info: info.filename)
+        return [limits.text(f"{source}/{info.filename}", archive.read(info)) for info in infos]
 
 
 def read_table(
     text: Text, header_at: int, separator: str, *, has_decimal_comma: bool = False
 ) -> Table:
     """Returns the table whose header is at a line (from 0). Raises RecordingError."""
-    header, *rows = csv.reader(text.lines[header_at:], delimiter=separator)
-    header = [name.strip() for name in header]
-    while rows and not any(cell.strip() for cell in rows[-1]):
-        rows.pop()
-    for row, cells in enumerate(rows):
-        if len(cells) != len(header):
+    reader = csv.reader(text.lines[header_at:], delimiter=separator)
+    try:
+        header = [name.strip() for name in next(reader, [])]
+        if len(header) > _MOST_COLUMNS:
             raise RecordingError(
-                text.path,
-                header_at + 2 + row,
-                f"expected {len(header)} cells as in the header, got {len(cells)}",
-            )
-    if not rows:
+                text.path, header_at + 1, f"has {len(header)} columns; at most {_MOST_COLUMNS} are "
+                "read"
+            )  # fmt: skip
+        rows = _Rows(text.path, header_at + 2, len(header), has_decimal_comma)
+        for cells in reader:
+            rows.add(cells)
+    except csv.Error as error:
+        raise RecordingError(text.path, header_at + 1, f"is not a table ({error})") from error
+    if not rows.count:
         raise RecordingError(
             text.path, header_at + 1, "there are no samples after the header; record again"
         )
-    return Table(text.path, header, rows, header_at + 2, has_decimal_comma)
+    values = np.frombuffer(rows.numbers, np.float64).reshape(rows.count, len(header))
+    return Table(text.path, header, values, rows.words, rows.first, header_at + 2)
+
+
+class _Rows:
+    """The rows of a table as they are read, as numbers to save memory."""
+
+    def __init__(self, path: str, first_line: int, width: int, has_decimal_comma: bool) -> None:
+        self._path, self._first_line = path, first_line
+        self._width, self._has_decimal_comma = width, has_decimal_comma
+        self._blank_widths: list[int] = []  # of rows that may be the last
+        self.count = 0
+        self.numbers = array("d")
+        self.words: dict[int, tuple[int, str]] = {}
+        self.first: list[str] = []
+
+    def add(self, cells: list[str]) -> None:
+        """Adds a row; blank ones may only follow the last. Raises RecordingError."""
+        if not any(cell.strip() for cell in cells):
+            self._blank_widths.append(len(cells))
+            return
+        for width in self._blank_widths:
+            self._check_width(width)
+            self.numbers.extend([math.nan] * width)
+            self.count += 1
+        self._blank_widths.clear()
+        self._check_width(len(cells))
+        self.first = self.first or cells
+        for column, cell in enumerate(cells):
+            self.numbers.append(self._number(column, cell.strip()))
+        self.count += 1
+
+    def _check_width(self, width: int) -> None:
+        if width != self._width:
+            raise RecordingError(
+                self._path,
+                self._first_line + self.count,
+                f"expected {self._width} cells as in the header, got {width}",
+            )
+
+    def _number(self, column: int, text: str) -> float:
+        try:
+            return float(text.replace(",", ".") if self._has_decimal_comma else text)
+        except ValueError:
+            if text:
+                self.words.setdefault(column, (self.count, text))
+            return math.nan
 
 
 def find_line(text: Text, *words: str) -> int | None:
@@ -168,13 +242,27 @@ def _is_text_name(name: str) -> bool:
     return name.lower().endswith(_ENDINGS) and not name.startswith("__MACOSX")
 
 
-def _check_size(path: Path, num_files: int, num_bytes: int) -> None:
-    if num_files > _MOST_FILES or num_bytes > _MOST_BYTES:
-        raise RecordingError(
-            path, 0, f"has {num_files} files of {num_bytes} bytes; choose a single recording"
-        )
+class _Limits:
+    """What the files of a recording may have together. Raises RecordingError beyond it."""
 
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._num_lines = 0
 
-def _text(path: str, data: bytes) -> Text:
-    text = data.decode("utf-8-sig", errors="replace")
-    return Text(path, text.replace("\r\n", "\n").replace("\r", "\n").split("\n"))
+    def check_size(self, num_files: int, num_bytes: int) -> None:
+        """Checks before anything is read."""
+        if num_files > _MOST_FILES or num_bytes > _MOST_BYTES:
+            raise RecordingError(
+                self._path, 0, f"has {num_files} files of {num_bytes} bytes, and at most "
+                f"{_MOST_FILES} files of {_MOST_BYTES} bytes are read; choose a single recording"
+            )  # fmt: skip
+
+    def text(self, path: str, data: bytes) -> Text:
+        """Returns the text in these bytes."""
+        self._num_lines += max(data.count(b"\n"), data.count(b"\r"))
+        if self._num_lines > _MOST_LINES:
+            raise RecordingError(
+                self._path, 0, f"has more than {_MOST_LINES} lines; choose a shorter recording"
+            )
+        text = data.decode("utf-8-sig", errors="replace")
+        return Text(path, text.replace("\r\n", "\n").replace("\r", "\n").split("\n"))

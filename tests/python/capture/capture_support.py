@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 from sparse_mocap import SensorRecord, Take
-from sparse_mocap.capture import Emulator
+from sparse_mocap.capture import CaptureClient, CaptureError, Emulator
+from sparse_mocap.capture.session import sessions
 
 SITES = ("left_wrist", "right_wrist", "left_ankle", "right_ankle", "head", "pelvis")
 DRIVER = "xsens_mt"
@@ -39,6 +41,14 @@ def until(is_so: Callable[[], Any], timeout_s: float = 20.0) -> None:
     while not is_so():
         assert time.perf_counter() < end, "it never happened"
         time.sleep(0.01)
+
+
+def stop_captures() -> None:
+    """Ends whatever a test left running."""
+    with suppress(CaptureError):  # a test may name a folder that is refused
+        for session in sessions():
+            with suppress(CaptureError):
+                CaptureClient(session).stop()
 
 
 Play = Callable[..., Emulator]

@@ -5,15 +5,14 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
-from capture_support import DRIVER, OPTIONS, Play
+from capture_support import DRIVER, OPTIONS, Play, stop_captures
 from sparse_mocap import Take
-from sparse_mocap.capture import CaptureClient, CaptureError, Emulator
-from sparse_mocap.capture.session import FOLDER_VARIABLE, sessions
+from sparse_mocap.capture import Emulator
+from sparse_mocap.capture.session import FOLDER_VARIABLE
 
 
 @pytest.fixture(autouse=True)
@@ -24,9 +23,7 @@ def runtime(
     folder = tmp_path_factory.mktemp("runtime")
     monkeypatch.setenv(FOLDER_VARIABLE, str(folder))
     yield folder
-    for session in sessions():
-        with suppress(CaptureError):
-            CaptureClient(session).stop()
+    stop_captures()
 
 
 @pytest.fixture

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import os
 import random
+import struct
 from contextlib import closing
 from pathlib import Path
 
 import numpy as np
 import pytest
-from sparse_mocap.capture import sample_log
+from sparse_mocap.capture import RecordingError, recording_to_take, sample_log
 from sparse_mocap.capture.raw_log import MAGIC, Kind, RawLogWriter, Record, read_records
 from sparse_mocap.capture.sample_log import SAMPLE, SampleLogReader, SampleLogWriter
 
@@ -170,3 +171,31 @@ def test_who_was_stalled_too_long_goes_on_with_the_oldest_left(
         # The file that it has open is there for it still, where the system allows that.
         assert stalled.read()["counter"].tolist() == [*range(16), *range(64, 100)]
         assert stalled.position == log.num_samples == 100
+
+
+def test_a_made_up_log_gives_one_line_soon(tmp_path: Path) -> None:
+    """Every byte pair claims a record of a megabyte, whose checksum is wrong."""
+    head = b"\xf5\x4c" + struct.pack("<BBIq", 1, 0, (1 << 20) - 1, 0)
+    (tmp_path / "raw.log").write_bytes(b"SMRAWLG1" + head * (12_000_000 // len(head)))
+    with pytest.raises(RecordingError, match="too damaged"):
+        recording_to_take(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "event",
+    [
+        b"[" * 100_000, b"[]", b"\xff", b'{"event": "capture"}',
+        b'{"event": "capture", "config": {"links": 5, "sites": []}}',
+        b'{"event": "capture", "config": {"links": [{"port": "p", "driver": "x"}], "sites": []}}',
+        b'{"event": "capture", "config": {"links": [], "sites": [], "surprise": 1}}',
+    ],
+)  # fmt: skip
+def test_a_log_with_other_content_gives_one_line(tmp_path: Path, event: bytes) -> None:
+    writer = RawLogWriter(tmp_path)
+    writer.append(Record(Kind.EVENT, 0, 1, event))
+    writer.append_bytes(7, 2, b"data of a link that is not there")
+    writer.close()
+    with pytest.raises(RecordingError) as caught:
+        recording_to_take(tmp_path)
+    assert str(tmp_path) in str(caught.value)
+    assert "\n" not in str(caught.value)
