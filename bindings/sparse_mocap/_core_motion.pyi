@@ -8,6 +8,14 @@ from ._core_types import Floats, Path
 class Skeleton:
     """A joint tree: pivot = end_parent + R_parent offset, end = pivot + R_joint bone."""
 
+    def __init__(
+        self, names: list[str], parents: list[int], pivots: ArrayLike, ends: ArrayLike
+    ) -> None:
+        """Pivots and ends (J, 3) m: where the joints turn and end in rest pose, in the world.
+
+        parents (J,) are smaller than their joint's own index, -1 for the first. Raises ValueError
+        when they are not, or a name is repeated.
+        """
     @property
     def names(self) -> list[str]:
         """The J joints' names, the root first."""

@@ -16,6 +16,12 @@ class SkeletonMapping:
     def joints(self) -> dict[str, str]:
         """The rig's joint for each standard joint that it has."""
     @property
+    def turned_joints(self) -> list[str]:
+        """The rig's joints that to_rig turns; the others keep their rest."""
+    @property
+    def ankles(self) -> tuple[str, str]:
+        """The rig's joints at which its left and right foot begin; empty where it has none."""
+    @property
     def is_by_names(self) -> bool:
         """False where limbs were recognised by their shape."""
     @property

@@ -74,6 +74,28 @@ Motion make_motion(const Skeleton& skeleton, double frame_time_s, const Doubles&
   return motion;
 }
 
+// Of where the joints turn and end in rest pose.
+Skeleton skeleton_at_rest(const std::vector<std::string>& names, const std::vector<int>& parents,
+                          const Doubles& pivots, const Doubles& ends) {
+  const auto num_joints = static_cast<py::ssize_t>(names.size());
+  if (parents.size() != names.size()) throw py::value_error("parents must be one for each name");
+  require_shape(pivots, {num_joints, 3}, "pivots");
+  require_shape(ends, {num_joints, 3}, "ends");
+  const auto p = pivots.unchecked<2>();
+  const auto e = ends.unchecked<2>();
+  std::vector<Joint> joints(names.size());
+  for (py::ssize_t j = 0; j < num_joints; ++j) {
+    Joint& joint = joints[static_cast<std::size_t>(j)];
+    joint.name = names[static_cast<std::size_t>(j)];
+    joint.parent = parents[static_cast<std::size_t>(j)];
+    const Vec3 pivot(p(j, 0), p(j, 1), p(j, 2));
+    joint.bone = Vec3(e(j, 0), e(j, 1), e(j, 2)) - pivot;
+    const auto q = static_cast<py::ssize_t>(joint.parent);
+    if (q >= 0 && q < j) joint.offset_parent = pivot - Vec3(e(q, 0), e(q, 1), e(q, 2));
+  }
+  return Skeleton(std::move(joints));
+}
+
 PositionFrame frame_named(const std::string& name) {
   if (name == "heading") return PositionFrame::heading;
   if (name == "root") return PositionFrame::root;
@@ -174,6 +196,12 @@ void bind_skeleton(py::module_& m) {
   py::class_<Skeleton>(
       m, "Skeleton",
       "A joint tree: pivot = end_parent + R_parent offset, end = pivot + R_joint bone.")
+      .def(py::init(&skeleton_at_rest), py::arg("names"), py::arg("parents"), py::arg("pivots"),
+           py::arg("ends"),
+           R"doc(pivots and ends (J, 3) m: where the joints turn and end in rest pose, in the world.
+
+parents (J,) are smaller than their joint's own index, -1 for the first. Raises ValueError
+when they are not, or a name is repeated.)doc")
       .def_property_readonly(
           "names",
           [](const Skeleton& s) {

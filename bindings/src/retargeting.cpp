@@ -14,6 +14,17 @@ struct Mapping {
   SkeletonMapping found;
 
   JointNames joints() const { return mapped_joint_names(rig, found); }
+
+  std::string ankle(std::size_t side) const {
+    const int joint = found.joints.ankle[side];
+    return joint < 0 ? "" : rig.joint(joint).name;
+  }
+
+  std::vector<std::string> turned() const {
+    std::vector<std::string> names;
+    for (const int joint : turned_joints(found)) names.push_back(rig.joint(joint).name);
+    return names;
+  }
 };
 
 Mapping map_motion(const Motion& motion, const JointNames& by_hand) {
@@ -65,6 +76,12 @@ void bind_mapping_class(py::module_& m) {
 A rig is any skeleton of a human body: of a motion file or of an animator's character.)doc")
       .def_property_readonly("joints", &Mapping::joints,
                              "The rig's joint for each standard joint that it has.")
+      .def_property_readonly("turned_joints", &Mapping::turned,
+                             "The rig's joints that to_rig turns; the others keep their rest.")
+      .def_property_readonly(
+          "ankles",
+          [](const Mapping& mapping) { return std::pair(mapping.ankle(0), mapping.ankle(1)); },
+          "The rig's joints at which its left and right foot begin; empty where it has none.")
       .def_property_readonly(
           "is_by_names", [](const Mapping& mapping) { return mapping.found.joints.is_by_names; },
           "False where limbs were recognised by their shape.")

@@ -11,9 +11,10 @@ from bpy.props import IntProperty
 from bpy.types import Context, Operator
 
 from ..scene import live as live_scene
-from ..scene.armature import select_only
-from ..scene.performance import perform_steps
+from ..scene.armature import is_ours
+from ..scene.performance import extend_scene, perform_steps
 from ..scene.settings import scene_choice, settings_of
+from ..scene.targets import chosen_armatures, own_figure, placement_of
 from ..session import live, sensors
 from ..session.database import Database
 from ..session.errors import InputError
@@ -22,6 +23,7 @@ from ..session.live import LiveSession, answer_of, one_line_of
 from ..session.new_files import takes_folder
 from ..session.port_scanner import port_scanner
 from ..session.sensors import SavedTake
+from ..session.stage import Stage
 from ..session.steps import Steps
 from .job_operator import JobOperator
 
@@ -145,23 +147,51 @@ class SPARSEMOCAP_OT_go_live(JobOperator, Operator):
         yield 0.0
         session = connected()
         database, calibration = result
-        rig = live_scene.live_rig(context, database.motions.skeleton)
+        armature = live_scene.follow(context, database.motions.skeleton)
         session.go_live(database, scene_choice(context.scene), calibration)
-        live_scene.follow(rig)
-        return f'Live preview on "{rig.armature.name}"'
+        return f'Live preview on "{armature.name}"'
 
 
 class SPARSEMOCAP_OT_leave_live(_NowOperator, Operator):
-    """Stop live preview, keep this pose."""
+    """Stop the live preview; the character's own pose and action come back."""
 
     bl_idname = "sparse_mocap.leave_live"
     bl_label = "Stop Live Preview"
-    bl_description = "Stop live preview, keep this pose"
+    bl_description = "Stop the live preview; the character's own pose and action come back"
     bl_options = {"REGISTER", "UNDO"}
 
     def act(self, context: Context) -> str:
         """Stop the preview."""
         connected().leave_live()
+        live_scene.leave()
+        return ""
+
+
+class SPARSEMOCAP_OT_recentre(_NowOperator, Operator):
+    """Let the live character stand at the origin."""
+
+    bl_idname = "sparse_mocap.recentre"
+    bl_label = "Recentre"
+    bl_description = "Let the live character stand at the origin"
+    bl_options = {"INTERNAL"}
+
+    def act(self, context: Context) -> str:
+        """Move the stage."""
+        _stage().recentre()
+        return ""
+
+
+class SPARSEMOCAP_OT_face_front(_NowOperator, Operator):
+    """Let the live character face the front, at the origin."""
+
+    bl_idname = "sparse_mocap.face_front"
+    bl_label = "Face Front"
+    bl_description = "Let the live character face the front, at the origin: the heading drifts"
+    bl_options = {"INTERNAL"}
+
+    def act(self, context: Context) -> str:
+        """Turn the stage."""
+        _stage().face_front()
         return ""
 
 
@@ -187,15 +217,30 @@ class SPARSEMOCAP_OT_stop_take(JobOperator, Operator):
     bl_description = "Stop recording, save the take and reconstruct it as an action on an armature"
     bl_options = {"REGISTER", "UNDO"}
 
+    _figure = ""
+
     def prepare(self, context: Context) -> Job:
         """Save the take and reconstruct it."""
-        settings = settings_of(context.scene)
+        settings, session = settings_of(context.scene), connected()
+        armatures = chosen_armatures(context)
+        previewed = live_scene.followed()
+        if previewed is not None and is_ours(previewed) and not armatures:
+            armatures = [previewed]
+        figure = own_figure(armatures)
+        self._figure = figure.name if figure is not None else ""
+        placement = placement_of(
+            context,
+            armatures,
+            start_frame=settings.start_frame,
+            whole_frames=settings.whole_frames,
+        )
         return sensors.save_take_job(
-            connected(),
+            session,
             bpy.path.abspath(settings.database),
             bpy.path.abspath(settings.calibration),
             takes_folder(bpy.data.filepath),
             scene_choice(context.scene),
+            placement,
         )
 
     def apply(self, context: Context, result: SavedTake) -> Steps[str]:
@@ -203,31 +248,34 @@ class SPARSEMOCAP_OT_stop_take(JobOperator, Operator):
         settings_of(context.scene).take = result.path
         for warning in result.warnings:
             self.report({"WARNING"}, warning)
-        if result.performance is None:
+        if result.placed is None:
             self.report({"WARNING"}, f"Not reconstructed: {result.reason}")
             yield 1.0
             return f"Take saved as {result.path}"
-        armature = self._previewed(context)
-        performed: Any = yield from perform_steps(
-            context,
-            result.performance,
-            settings_of(context.scene).start_frame,
-            reuse=armature is not None,
-        )
+        leave_live()
+        if context.mode != "OBJECT" and bpy.ops.object.mode_set.poll():
+            bpy.ops.object.mode_set(mode="OBJECT")
+        figure = bpy.data.objects.get(self._figure)
+        performed: Any = yield from perform_steps(context, result.placed, figure)
+        if settings_of(context.scene).extend_scene:
+            extend_scene(context, result.placed)
         action = performed.animation_data.action
         return f'"{action.name}" on "{performed.name}"; take saved as {result.path}'
 
-    def _previewed(self, context: Context) -> Any:
-        """The armature of the live preview, which stops, alone selected; None without one."""
-        session, armature = live.current(), live_scene.followed()
-        if session is not None:
-            session.leave_live()
-        if armature is None or armature.name not in context.view_layer.objects:
-            return None
-        if context.mode != "OBJECT" and bpy.ops.object.mode_set.poll():
-            bpy.ops.object.mode_set(mode="OBJECT")
-        select_only(context, armature)
-        return armature
+
+def leave_live() -> None:
+    """End the live preview, if there is one; sensors stay connected."""
+    session = live.current()
+    if session is not None:
+        session.leave_live()
+    live_scene.leave()
+
+
+def _stage() -> Stage:
+    stage = live_scene.stage()
+    if stage is None:
+        raise InputError("There is no live preview: press Live Preview first")
+    return stage
 
 
 CLASSES = (
@@ -237,6 +285,8 @@ CLASSES = (
     SPARSEMOCAP_OT_disconnect_sensors,
     SPARSEMOCAP_OT_go_live,
     SPARSEMOCAP_OT_leave_live,
+    SPARSEMOCAP_OT_recentre,
+    SPARSEMOCAP_OT_face_front,
     SPARSEMOCAP_OT_record_take,
     SPARSEMOCAP_OT_stop_take,
 )

@@ -7,9 +7,12 @@ import bpy
 from bpy.props import BoolProperty, StringProperty
 from bpy.types import Context, Event, Operator
 
-from ..scene.mapping import show_joints, show_mapping, shown_joints
+from ..scene.binding import rest_bones
+from ..scene.mapping import mapping_of, show_joints, show_mapping, shown_joints
+from ..scene.settings import settings_of
 from ..session import mapping
-from ..session.errors import one_line
+from ..session.character import still_motion
+from ..session.errors import InputError, one_line
 
 SKIP = {"HIDDEN", "SKIP_SAVE"}
 
@@ -46,19 +49,60 @@ class _FileOperator(_MappingOperator):
         return {"RUNNING_MODAL"}
 
 
+class SPARSEMOCAP_OT_show_mapping(_MappingOperator, Operator):
+    """Show which of the character's bones are mapped, to check and correct."""
+
+    bl_idname = "sparse_mocap.show_mapping"
+    bl_label = "Show Mapping"
+    bl_description = "Show which bones of the character are mapped, to check and correct them"
+    bl_options = {"REGISTER"}
+
+    def do(self, context: Context) -> str:
+        """Map the character."""
+        armature = settings_of(context.scene).target
+        if armature is None:
+            raise InputError("Choose a character first")
+        still = still_motion(rest_bones(context, armature))
+        found = mapping.mapped(armature.name, still)
+        show_mapping(context, found)
+        if found.problem:
+            raise InputError(f'"{armature.name}": {found.problem}')
+        return f'Mapped {len(found.joints)} bones of "{armature.name}"'
+
+
+class SPARSEMOCAP_OT_pick_bone(_MappingOperator, Operator):
+    """Map the active bone to this joint."""
+
+    bl_idname = "sparse_mocap.pick_bone"
+    bl_label = "Use Active Bone"
+    bl_description = "Use the active bone for this part of the body"
+    bl_options = {"REGISTER", "INTERNAL"}
+
+    joint: StringProperty(name="Joint", options=SKIP)
+
+    def do(self, context: Context) -> str:
+        """Put its name into the row."""
+        bone = context.active_pose_bone or context.active_bone
+        rows = mapping_of(context)
+        if bone is None or bone.name not in rows.sources:
+            raise InputError("Select a bone of the character in Pose Mode first")
+        rows.joints[self.joint].source = bone.name
+        return f"{mapping.label_of(self.joint)}: {bone.name}"
+
+
 class SPARSEMOCAP_OT_remember_mapping(_MappingOperator, Operator):
     """Use this mapping for every file with this skeleton."""
 
     bl_idname = "sparse_mocap.remember_mapping"
     bl_label = "Remember"
-    bl_description = "Use this mapping for every file with this skeleton from now on"
+    bl_description = "Use this mapping for every character and file with this skeleton from now on"
     bl_options = {"REGISTER"}
 
     def do(self, context: Context) -> str:
         """Remember the rows."""
         found = mapping.remember(shown_joints(context))
         show_mapping(context, found)
-        return f'Mapping remembered for files with the skeleton of "{found.name}"'
+        return f'Mapping remembered for every skeleton like that of "{found.name}"'
 
 
 class SPARSEMOCAP_OT_forget_mapping(_MappingOperator, Operator):
@@ -106,6 +150,8 @@ class SPARSEMOCAP_OT_load_mapping(_FileOperator, Operator):
 
 
 CLASSES = (
+    SPARSEMOCAP_OT_show_mapping,
+    SPARSEMOCAP_OT_pick_bone,
     SPARSEMOCAP_OT_remember_mapping,
     SPARSEMOCAP_OT_forget_mapping,
     SPARSEMOCAP_OT_save_mapping,

@@ -1,18 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Step 3: the take as an action on an armature."""
 
+from typing import Any
+
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 from bpy.types import Context, Event, Operator
 
 from ..scene.armature import reusable_armature
-from ..scene.performance import perform_steps
+from ..scene.performance import extend_scene, perform_steps
 from ..scene.settings import options_text, settings_of
+from ..scene.targets import chosen_armatures, held_warning, own_figure, placement_of
+from ..session.bake import PlacedTake, placed
 from ..session.job import Job
 from ..session.methods import Items, choice_of, default_of, option_items
-from ..session.reconstruct import Performance, reconstruct_job
+from ..session.reconstruct import reconstruct_job
 from ..session.steps import Steps
 from .job_operator import JobOperator
+from .live import leave_live
 
 SKIP = {"SKIP_SAVE"}
 
@@ -35,6 +40,10 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
     )
     start_frame: FloatProperty(name="Start frame", default=1.0, options=SKIP)
     reuse_armature: BoolProperty(name="Reuse armature", options=SKIP)
+    whole_frames: BoolProperty(name="Whole frames", default=True, options=SKIP)
+    extend_scene: BoolProperty(name="Extend scene", options=SKIP)
+
+    _figure = ""
 
     def prepare(self, context: Context) -> Job:
         """Reconstruct the scene's take from the scene's database."""
@@ -44,35 +53,50 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
             self.method, self.preset = settings.method, settings.preset
         if not is_chosen("options"):
             self.options = options_text(settings)
-        self.fill_from_scene(context, "offline", "start_frame", "reuse_armature")
+        self.fill_from_scene(
+            context, "offline", "start_frame", "reuse_armature", "whole_frames", "extend_scene"
+        )
         choice, renamed = choice_of(self.method, self.preset, self.options)
         if renamed:
             self.report({"WARNING"}, renamed)
-        job = reconstruct_job(
+        armatures = chosen_armatures(context)
+        if self.reuse_armature and not armatures:
+            armatures = [reusable_armature(context)]
+        figure = own_figure(armatures)
+        self._figure = figure.name if figure is not None else ""
+        placement = placement_of(
+            context, armatures, start_frame=self.start_frame, whole_frames=self.whole_frames
+        )
+        return reconstruct_job(
             bpy.path.abspath(settings.database),
             bpy.path.abspath(settings.take),
             bpy.path.abspath(settings.calibration),
             choice=choice,
             best_quality=self.offline,
+            finish=lambda performance, progress: placed(performance, placement, progress),
         )
-        if self.reuse_armature:
-            reusable_armature(context)  # before the work, so that an error comes at once
-        return job
 
-    def apply(self, context: Context, result: Performance) -> Steps[str]:
-        """Create one action, on a new armature or an existing one."""
-        if result.is_guess:
+    def apply(self, context: Context, result: PlacedTake) -> Steps[str]:
+        """Create one action for each character, or on the add-on's own figure."""
+        performance = result.performance
+        if performance.is_guess:
             self.report(
                 {"WARNING"},
                 "The motion database has nothing like this take, so the motion is a guess",
             )
-        armature = yield from perform_steps(
-            context, result, self.start_frame, reuse=self.reuse_armature
+        for target in result.placement.targets:
+            if target.held:
+                self.report({"WARNING"}, held_warning(target))
+        leave_live()
+        armature: Any = yield from perform_steps(
+            context, result, bpy.data.objects.get(self._figure)
         )
+        if self.extend_scene:
+            extend_scene(context, result)
         action = armature.animation_data.action
         return (
-            f'"{action.name}" on "{armature.name}": {result.duration_s:.1f} s, '
-            f"sensors match: {result.match}"
+            f'"{action.name}" on "{armature.name}": {performance.duration_s:.1f} s, '
+            f"sensors match: {performance.match}"
         )
 
 

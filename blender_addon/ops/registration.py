@@ -6,8 +6,8 @@ import atexit
 import bpy
 from bpy.app.handlers import persistent
 
+from ..scene import live as live_scene
 from ..scene import prompt
-from ..scene.live import stop_ticking
 from ..session import job
 from ..session import live as live_session
 from ..session.calibrating import calibrations
@@ -44,9 +44,19 @@ CLASSES = (
 def _before_load(*_: object) -> None:
     """Stop everything before another .blend file is opened."""
     job.cancel_current()
-    stop_ticking()
+    live_scene.stop_ticking()
     prompt.hide()
     live_session.end()
+
+
+@persistent
+def _before_save(*_: object) -> None:
+    live_scene.before_save()
+
+
+@persistent
+def _after_save(*_: object) -> None:
+    live_scene.after_save()
 
 
 def _end_all() -> None:
@@ -65,15 +75,19 @@ def register() -> None:
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.app.handlers.load_pre.append(_before_load)
+    bpy.app.handlers.save_pre.append(_before_save)
+    bpy.app.handlers.save_post.append(_after_save)
     atexit.register(_end_all)
 
 
 def unregister() -> None:
     """Stop everything and unregister the operators."""
-    stop_ticking()
+    live_scene.stop_ticking()
     prompt.hide()
     _end_all()
     atexit.unregister(_end_all)
+    bpy.app.handlers.save_post.remove(_after_save)
+    bpy.app.handlers.save_pre.remove(_before_save)
     bpy.app.handlers.load_pre.remove(_before_load)
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

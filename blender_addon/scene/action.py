@@ -57,7 +57,7 @@ def action_steps(
             for what, track in tracks.items():
                 for index, values in enumerate(track.T):
                     action.name  # noqa: B018 - raises ReferenceError after an undo
-                    _set_keys(new_curve(path + what, index, bone), frames, values)
+                    set_keys(new_curve(path + what, index, bone), frames, values)
                     yield (joint + (index + 1) / len(track.T)) / len(rig.bones)
     except BaseException:
         with suppress(ReferenceError):
@@ -78,12 +78,18 @@ def _positions(motion: Any) -> dict[int, NDArray[np.float64]]:
     return {**moved, 0: np.asarray(motion.root_positions)}
 
 
-def _set_keys(curve: FCurve, frames: NDArray[np.float64], values: NDArray[np.float64]) -> None:
+def set_keys(
+    curve: FCurve,
+    frames: NDArray[np.float64],
+    values: NDArray[np.float64],
+    interpolation: str = "LINEAR",
+) -> None:
+    """Set the keys of a new curve, in one go."""
     keys = curve.keyframe_points
     keys.add(len(frames))
     keys.foreach_set("co", np.column_stack([frames, values]).ravel())
     for attribute, identifier in (
-        ("interpolation", "LINEAR"),
+        ("interpolation", interpolation),
         ("handle_left_type", "AUTO_CLAMPED"),
         ("handle_right_type", "AUTO_CLAMPED"),
     ):

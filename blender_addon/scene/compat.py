@@ -25,12 +25,53 @@ def new_curve_of(action: Action) -> NewCurve:
     """A function that creates curves in a new action for an object."""
     if not hasattr(action, "slots"):
         return lambda path, index, group: action.fcurves.new(path, index=index, action_group=group)
-    slot = action.slots.new(id_type="OBJECT", name=SLOT_NAME)
+    return _new_in(_bag(action, action.slots.new(id_type="OBJECT", name=SLOT_NAME)))
+
+
+class Curves:
+    """The curves of one slot of an action."""
+
+    def __init__(self, collection: Any, new: NewCurve) -> None:
+        self._collection = collection
+        self._new = new
+
+    def all(self) -> list[FCurve]:
+        """All of them."""
+        return list(self._collection)
+
+    def new(self, path: str, index: int, group: str) -> FCurve:
+        """A new curve; index -1 for a property that is no array."""
+        return self._new(path, max(index, 0), group)
+
+    def remove(self, curve: FCurve) -> None:
+        """Remove a curve."""
+        self._collection.remove(curve)
+
+
+def curves_for(action: Action, slot: Any) -> Curves:
+    """The curves of the action's slot of that one's identifier; without it, of its first or new."""
+    if not hasattr(action, "slots"):
+        return Curves(action.fcurves, new_curve_of(action))
+    wanted = slot.identifier if slot is not None else ""
+    found = next((own for own in action.slots if own.identifier == wanted), None)
+    if found is None:
+        new = new_curve_of(action)
+        return Curves(_bag(action, action.slots[0]).fcurves, new)
+    bag = _bag(action, found)
+    return Curves(bag.fcurves, _new_in(bag))
+
+
+def _bag(action: Action, slot: Any) -> Any:
     if hasattr(anim_utils, "action_ensure_channelbag_for_slot"):
-        bag = anim_utils.action_ensure_channelbag_for_slot(action, slot)
+        return anim_utils.action_ensure_channelbag_for_slot(action, slot)
+    layer = action.layers[0] if action.layers else action.layers.new("Layer")
+    strip = layer.strips[0] if layer.strips else layer.strips.new(type="KEYFRAME")
+    return strip.channelbag(slot, ensure=True)
+
+
+def _new_in(bag: Any) -> NewCurve:
+    if hasattr(anim_utils, "action_ensure_channelbag_for_slot"):
         return lambda path, index, group: bag.fcurves.new(path, index=index, group_name=group)
-    strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
-    bag = strip.channelbag(slot, ensure=True)
 
     def new_curve(path: str, index: int, group: str) -> FCurve:
         curve = bag.fcurves.new(path, index=index)

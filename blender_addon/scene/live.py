@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shows the newest live pose on an armature, without keys and without other changes."""
+"""Shows the newest live pose on a character, without keys; its own pose and action come back."""
 
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass, field
 from typing import Any
 
 import bpy
@@ -11,8 +12,11 @@ import numpy as np
 from bpy.types import Context, Object
 
 from ..session import live
+from ..session.core import core
 from ..session.errors import InputError
 from ..session.live_poses import Pose
+from ..session.retarget import Target
+from ..session.stage import Stage
 from . import compat
 from .armature import (
     Rig,
@@ -24,53 +28,110 @@ from .armature import (
     use_quaternions,
 )
 from .axes import bone_quaternions, to_blender
+from .binding import bind
+from .pose_memory import PoseMemory
+from .rig_pose import RigPose
+from .settings import settings_of
 
 TICK_S = 0.02
 _PANEL_S = 0.25
 
-_target = ""  # the armature's name, since an undo invalidates references
-_bones: list[str] = []
-_units_per_metre = 1.0
+
+@dataclass
+class _Followed:
+    """The character that shows the live poses; by names, since an undo invalidates references."""
+
+    armature: str
+    memory: PoseMemory
+    skeleton: Any
+    figure: Rig | None
+    """The add-on's own figure, without its reference."""
+    rig: RigPose | None
+    """Another character."""
+    stage: Stage = field(default_factory=Stage)
+
+
+_followed: _Followed | None = None
+_ended = ""
 _next_panel_s = 0.0
 
 
-def live_rig(context: Context, skeleton: Any) -> Rig:
-    """The armature for the live preview: the existing one if it fits, else a new one.
+def ended_because() -> str:
+    """Why the live preview ended by itself; empty when it did not."""
+    return _ended
 
-    Its action, if any, is unassigned and stays in the file. Raises InputError.
+
+def stage() -> Stage | None:
+    """Where the live character stands; None without one."""
+    return _followed.stage if _followed is not None else None
+
+
+def follow(context: Context, skeleton: Any) -> Object:
+    """Choose or make the character for the live preview and take its action off.
+
+    Raises InputError; nothing is changed then.
     """
-    rig = None
-    try:
-        armature = reusable_armature(context)
-        if armature.animation_data is None or not armature.animation_data.nla_tracks:
-            rig = rig_of(armature, skeleton)
-    except InputError:  # there is none that fits
-        rig = None
-    if rig is None:
-        rig = new_armature(context, skeleton)
-    armature = editable(rig.armature)
-    data = armature.animation_data
-    if data is not None and data.action is not None:
-        data.action.use_fake_user = True
-        data.action = None
-    use_quaternions(armature)
-    return rig
-
-
-def follow(rig: Rig) -> None:
-    """Show the live poses on this armature."""
-    global _target, _units_per_metre
-    _target, _bones[:] = rig.armature.name, rig.bones
-    _units_per_metre = rig.units_per_metre
+    global _followed, _ended
+    leave()
+    chosen = settings_of(context.scene).target
+    figure, target = None, None
+    if chosen is not None and not is_ours(chosen):
+        armature = editable(chosen)
+        target = bind(context, armature)
+    else:
+        rig = rig_of(editable(chosen), skeleton) if chosen else _figure(context, skeleton)
+        armature = rig.armature
+        figure = Rig(None, rig.bones, rig.units_per_metre)
+    memory = PoseMemory.of(armature)
+    memory.take_off()
+    if figure is not None:
+        use_quaternions(armature)
+    rig_pose = RigPose(target) if target is not None else None
+    if rig_pose is not None:
+        rig_pose.begin(armature)
+    _followed = _Followed(armature.name, memory, skeleton, figure, rig_pose)
+    _ended = ""
     ensure_ticking()
+    return armature
+
+
+def target_of(armature: Object) -> Target | None:
+    """How the followed character is moved, if it is this one and not the add-on's own figure."""
+    if _followed is None or _followed.armature != armature.name or _followed.rig is None:
+        return None
+    return _followed.rig.target
+
+
+def leave(reason: str = "") -> None:
+    """Give the character its own pose and action back; reason: why the preview ended by itself."""
+    global _followed, _ended
+    left, _followed = _followed, None
+    if left is not None:
+        _ended = reason
+        left.memory.put_back()
 
 
 def followed() -> Object | None:
-    """The armature that shows the live poses; None when it is gone."""
-    armature = bpy.data.objects.get(_target) if _target else None
-    if armature is None or not is_ours(armature) or armature.library is not None:
+    """The character that shows the live poses; None when it is gone."""
+    armature = bpy.data.objects.get(_followed.armature) if _followed is not None else None
+    if armature is None or armature.type != "ARMATURE" or armature.library is not None:
         return None
     return armature
+
+
+def before_save() -> None:
+    """Let the file be saved with the character's own pose and action."""
+    if _followed is not None:
+        _followed.memory.put_back()
+
+
+def after_save() -> None:
+    """Show the live poses again."""
+    if _followed is not None:
+        _followed.memory.take_off()
+        armature = followed()
+        if armature is not None and _followed.rig is not None:
+            _followed.rig.begin(armature)
 
 
 def ensure_ticking() -> None:
@@ -80,34 +141,72 @@ def ensure_ticking() -> None:
 
 
 def stop_ticking() -> None:
-    """Remove the timer."""
-    global _target
-    _target = ""
+    """Remove the timer and end the preview."""
+    leave()
     if bpy.app.timers.is_registered(_tick_or_end):
         bpy.app.timers.unregister(_tick_or_end)
 
 
 def tick() -> Pose | None:
-    """Apply the newest pose to the armature and return it; None when there is no new one."""
+    """Apply the newest pose to the character and return it; None when there is no new one."""
     session = live.current()
-    if session is None or not session.is_live_wanted or compat.is_rendering():
+    if _followed is None or compat.is_rendering():
+        return None
+    if session is None or not session.is_running or not session.is_live_wanted:
+        leave()
         return None
     armature = followed()
-    if armature is None:  # deleted, or undone
+    problem = _problem(armature)
+    if armature is None or problem:
         session.leave_live()
+        leave(problem)
         return None
     if armature.mode == "EDIT":
         return None
     pose = session.newest_pose()
-    if pose is not None:
-        _show(armature, pose)
+    if pose is None:
+        return None
+    shown = _followed.stage.shown(pose, in_place=settings_of(bpy.context.scene).in_place)
+    if _followed.rig is not None:
+        _followed.rig.show(armature, _motion(_followed.skeleton, shown))
+    elif _followed.figure is not None:
+        _show(armature, _followed.figure, shown)
     return pose
+
+
+def _problem(armature: Object | None) -> str:
+    """Why the preview cannot continue on the character; empty when it can."""
+    if _followed is None or armature is None:
+        return "Live preview ended: its character is gone"
+    if armature.animation_data is not None and armature.animation_data.action is not None:
+        return f'Live preview ended: "{armature.name}" was given an action'
+    names = _followed.rig.bones if _followed.rig is not None else []
+    if _followed.figure is not None:
+        names = _followed.figure.bones
+    if armature.mode != "EDIT":
+        missing = next((name for name in names if name not in armature.pose.bones), "")
+        if missing:
+            return f'Live preview ended: "{armature.name}" has no bone "{missing}" any more'
+    return ""
+
+
+def _figure(context: Context, skeleton: Any) -> Rig:
+    """The add-on's own figure in the scene if there is one that fits, else a new one."""
+    try:
+        return rig_of(reusable_armature(context), skeleton)
+    except InputError:  # there is none that fits
+        return new_armature(context, skeleton)
+
+
+def _motion(skeleton: Any, pose: Pose) -> Any:
+    return core().Motion(skeleton, 1.0, pose.root_position[None], pose.rotations[None])
 
 
 def _tick_or_end() -> float | None:
     global _next_panel_s
     session = live.current()
     if session is None:
+        leave()
         return None
     pose = tick()
     if pose is not None or time.perf_counter() >= _next_panel_s or not session.is_running:
@@ -116,14 +215,12 @@ def _tick_or_end() -> float | None:
     return TICK_S if session.is_running else None
 
 
-def _show(armature: Object, pose: Pose) -> None:
+def _show(armature: Object, figure: Rig, pose: Pose) -> None:
     bones = armature.data.bones
-    if any(name not in bones for name in _bones):
-        return  # its bones were changed
-    for joint, name in enumerate(_bones):
+    for joint, name in enumerate(figure.bones):
         rest = np.array(bones[name].matrix_local.to_3x3())
         posed = armature.pose.bones[name]
         posed.rotation_quaternion = bone_quaternions(pose.rotations[joint], rest)
         if joint == 0:
             head = np.array(bones[name].head_local)
-            posed.location = (to_blender(pose.root_position) * _units_per_metre - head) @ rest
+            posed.location = (to_blender(pose.root_position) * figure.units_per_metre - head) @ rest

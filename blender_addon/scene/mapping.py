@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The mapping of the last imported skeleton as editable rows; not saved in the .blend file."""
+"""The mapping of the skeleton looked at last as editable rows; not saved in the .blend file."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from ..session.mapping import Mapped, last_mapped
 
 
 class SPARSEMOCAP_PG_mapped_joint(PropertyGroup):
-    """A joint of the standard skeleton (its name) and the file's joint mapped to it."""
+    """A joint of the standard skeleton (its name) and the bone or file's joint mapped to it."""
 
     source: StringProperty(
-        name="Joint", description="Joint of the file. Empty: detected automatically"
+        name="Joint", description="The bone that is mapped. Empty: detected automatically"
     )
 
 

@@ -1,27 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A reconstructed take in the scene: an action on an armature."""
+"""A reconstructed take in the scene: an action on each of its characters."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, fields
 
+import bpy
 import numpy as np
 from bpy.types import Action, Context, Object
 
-from ..session.reconstruct import Performance
-from ..session.steps import Steps
-from .action import action_steps, frames_of
+from ..session.bake import PlacedTake
+from ..session.errors import InputError
+from ..session.retarget import RigTake
+from ..session.steps import Steps, part
+from .action import action_steps
 from .armature import (
-    is_ours,
+    editable,
     new_armature,
     remove_armature,
-    reusable_armature,
     rig_of,
     select_only,
     selection_back_on_error,
     use_quaternions,
 )
 from .compat import assign_action
+from .imported import remove_actions
+from .rig_action import rig_action_steps
 
 _FACTS = "sparse_mocap"  # custom property of actions that this add-on made
 
@@ -35,34 +39,55 @@ class Facts:
     is_guess: bool
 
 
-def perform_steps(
-    context: Context, performance: Performance, start_frame: float, *, reuse: bool
-) -> Steps[Object]:
-    """The armature with the take's action, active and alone selected; a new one unless reuse.
+def perform_steps(context: Context, take: PlacedTake, figure: Object | None) -> Steps[Object]:
+    """The last character with the take's action, active and alone selected.
 
+    figure: the add-on's own figure to use; None: a new one, unless the take has characters.
     Raises InputError or ValueError; the scene is then unchanged, also when closed early.
     """
-    motion = performance.motion
-    times_s = np.arange(motion.num_frames) * motion.frame_time_s
-    frames = frames_of(context.scene, times_s, start_frame)
+    made: list[tuple[str, Action]] = []
+    num_parts = len(take.rig_takes) + (figure is not None or not take.rig_takes)
+    share, new_figure = 1.0 / num_parts, None
+    figure_name = figure.name if figure is not None else ""
     with selection_back_on_error(context):
-        if reuse:
-            rig = rig_of(reusable_armature(context), motion.skeleton)
-        else:
-            rig = new_armature(context, motion.skeleton)
         try:
-            action = yield from action_steps(performance.name, rig, motion, frames)
+            for number, rig_take in enumerate(take.rig_takes):
+                armature = editable(_armature(rig_take.target.armature))
+                name = _action_name(take, rig_take)
+                steps = rig_action_steps(name, armature, rig_take, take.frames)
+                made.append((armature.name, (yield from part(steps, number * share, share))))
+            if num_parts > len(take.rig_takes):
+                if figure_name:
+                    rig = rig_of(_armature(figure_name), take.motion.skeleton)
+                else:
+                    rig = new_armature(context, take.motion.skeleton)
+                    new_figure = rig.armature
+                steps = action_steps(take.performance.name, rig, take.motion, take.frames)
+                made.append((rig.armature.name, (yield from part(steps, 1.0 - share, share))))
+                use_quaternions(rig.armature)
         except BaseException:
-            if not reuse:
-                remove_armature(rig.armature)
+            remove_actions([action for _, action in made])
+            if new_figure is not None:
+                remove_armature(new_figure)
             raise
-    armature = rig.armature
-    facts = Facts(performance.duration_s, performance.match, performance.is_guess)
-    action[_FACTS] = asdict(facts)
-    use_quaternions(armature)
-    assign_action(armature, action)
+    return _assign(context, take, made)
+
+
+def _assign(context: Context, take: PlacedTake, made: list[tuple[str, Action]]) -> Object:
+    facts = Facts(take.performance.duration_s, take.performance.match, take.performance.is_guess)
+    for name, action in made:
+        action[_FACTS] = asdict(facts)
+        armature = bpy.data.objects[name]
+        assign_action(armature, action)
     select_only(context, armature)
     return armature
+
+
+def extend_scene(context: Context, take: PlacedTake) -> None:
+    """Let the scene end no earlier than the take."""
+    if len(take.frames):
+        scene = context.scene
+        scene.frame_end = max(scene.frame_end, int(np.ceil(take.frames[-1])))
 
 
 def facts_of(action: Action) -> Facts | None:
@@ -77,7 +102,21 @@ def facts_of(action: Action) -> Facts | None:
 
 
 def performed_action(obj: Object | None) -> Action | None:
-    """The action that a Sparse Mocap armature plays."""
-    if obj is None or not is_ours(obj) or obj.animation_data is None:
+    """The action that a character plays."""
+    if obj is None or obj.type != "ARMATURE" or obj.animation_data is None:
         return None
     return obj.animation_data.action
+
+
+def _armature(name: str) -> Object:
+    armature = bpy.data.objects.get(name)
+    if armature is None:
+        raise InputError(f'The character "{name}" is gone: choose another one')
+    return armature
+
+
+def _action_name(take: PlacedTake, rig_take: RigTake) -> str:
+    is_only = len(take.rig_takes) == 1
+    return (
+        take.performance.name if is_only else f"{take.performance.name} {rig_take.target.armature}"
+    )

@@ -11,7 +11,7 @@ from bpy.props import (
     PointerProperty,
     StringProperty,
 )
-from bpy.types import Context, PropertyGroup, Scene
+from bpy.types import Context, Object, PropertyGroup, Scene
 
 from ..session.methods import (
     Items,
@@ -46,6 +46,10 @@ def _ports(_: PropertyGroup, __: Context, text: str) -> list[str]:
 
 def _drivers(_: PropertyGroup, __: Context, text: str) -> list[str]:
     return [driver for driver in port_scanner.result.drivers if text.lower() in driver]
+
+
+def _is_armature(_: PropertyGroup, obj: Object) -> bool:
+    return obj.type == "ARMATURE"
 
 
 class SPARSEMOCAP_PG_source(PropertyGroup):
@@ -128,6 +132,33 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
     reuse_armature: BoolProperty(
         name="Reuse armature",
         description="Put the action on a Sparse Mocap armature in this scene, not on a new one",
+    )
+    target: PointerProperty(
+        name="Character",
+        description=(
+            "The armature that live previews and takes move. Empty: a figure of the add-on's own"
+        ),
+        type=Object,
+        poll=_is_armature,
+    )
+    to_selected: BoolProperty(
+        name="Also on selected",
+        description="Also put takes on the other selected armatures",
+    )
+    whole_frames: BoolProperty(
+        name="Whole frames",
+        description=(
+            "Keys on every whole frame of the scene. Off: keys at the take's own times, which "
+            "usually lie between frames"
+        ),
+        default=True,
+    )
+    extend_scene: BoolProperty(
+        name="Extend scene",
+        description="Move the scene's end if the take would end after it",
+    )
+    in_place: BoolProperty(
+        name="In place", description="Keep the live character at the origin while it moves"
     )
     calibration: StringProperty(
         name="Calibration",

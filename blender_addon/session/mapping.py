@@ -10,6 +10,30 @@ from .core import core
 from .errors import InputError, one_line
 
 SUFFIX = ".json"
+
+_SIDED = {
+    "clavicle": "Shoulder",
+    "humerus": "Upper arm",
+    "radius": "Forearm",
+    "wrist": "Hand",
+    "femur": "Thigh",
+    "tibia": "Shin",
+    "foot": "Foot",
+    "toes": "Toes",
+}
+LABELS: dict[str, str] = {
+    "root": "Pelvis",
+    "lowerback": "Lower back",
+    "upperback": "Upper back",
+    "thorax": "Chest",
+    "lowerneck": "Neck",
+    "upperneck": "Upper neck",
+    "head": "Head",
+    **{f"l{joint}": f"{label} L" for joint, label in _SIDED.items()},
+    **{f"r{joint}": f"{label} R" for joint, label in _SIDED.items()},
+}
+"""What animators call the standard joints; those without a label have no bone in usual rigs."""
+
 _MOST_FRAMES = 1000  # of a motion, to detect the joints from
 
 
@@ -31,7 +55,12 @@ class Mapped:
 
 
 last_mapped: list[Mapped] = []
-"""The skeleton of the last file that was imported, if there is one."""
+"""The skeleton that was looked at last: of an imported file or a character, if there is one."""
+
+
+def label_of(joint: str) -> str:
+    """What the panel calls a standard joint."""
+    return LABELS.get(joint, joint)
 
 
 def mapped(name: str, motion: Any, by_hand: dict[str, str] | None = None) -> Mapped:
@@ -79,7 +108,7 @@ def load(path: str) -> dict[str, str]:
 
 def _last() -> Mapped:
     if not last_mapped:
-        raise InputError("There is no skeleton to map: import a motion file first")
+        raise InputError("There is no skeleton to map: choose a character or import a motion file")
     return last_mapped[0]
 
 

@@ -90,8 +90,11 @@ def default_of(method: str, option: str) -> str:
 
 
 def has_best_quality(method: str) -> bool:
-    """Whether the method can use the whole take for every frame."""
-    return any(known.works_on_whole_takes for known in _methods() if known.name == method)
+    """Whether the method (empty: the default) can use the whole take for every frame."""
+    known_methods = _methods()
+    if not method:
+        return bool(known_methods) and bool(known_methods[0].works_on_whole_takes)
+    return any(known.works_on_whole_takes for known in known_methods if known.name == method)
 
 
 def _methods() -> tuple[Any, ...]:

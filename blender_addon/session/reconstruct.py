@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,8 +37,9 @@ def reconstruct_job(
     *,
     choice: MethodChoice,
     best_quality: bool,
+    finish: Callable[[Performance, Progress], Any] = lambda performance, _: performance,
 ) -> Job:
-    """The job that reconstructs a take from a database; its result is a Performance.
+    """The job that reconstructs a take from a database; its result is what finish makes of it.
 
     calibration_path: empty for sensors in the default orientation. Raises InputError, or what is
     wrong with the files.
@@ -47,8 +49,8 @@ def reconstruct_job(
     take = takes.get(take_path)
     calibration = calibration_at(calibration_path)
 
-    def work(progress: Progress) -> Performance:
-        return reconstruct(
+    def work(progress: Progress) -> Any:
+        performance = reconstruct(
             database,
             take,
             calibration=calibration,
@@ -56,6 +58,7 @@ def reconstruct_job(
             best_quality=best_quality,
             progress=progress,
         )
+        return finish(performance, progress)
 
     return Job(RECONSTRUCTING, work)
 

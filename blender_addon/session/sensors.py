@@ -7,15 +7,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from .bake import PlacedTake, Placement, placed
 from .calibrating import calibration_at
 from .core import capture, core
 from .database import databases
 from .errors import InputError, one_line
 from .job import Job, Progress
 from .live import ANSWER_WITHIN_S, LiveSession, answer_of, one_line_of
-from .methods import MethodChoice
+from .methods import MethodChoice, has_best_quality
 from .new_files import free_path, stamp
-from .reconstruct import Performance, reconstruct
+from .reconstruct import reconstruct
 from .take import takes
 
 STARTING_LIVE, SAVING_TAKE = "Starting the live preview", "Saving the take"
@@ -41,9 +42,10 @@ class SavedTake:
 
     path: str
     warnings: tuple[str, ...]
-    performance: Performance | None
+    placed: PlacedTake | None
+    """The take on the characters, in best quality where the method has it."""
     reason: str = ""
-    """Why there is no performance."""
+    """Why there is none."""
 
 
 last_takes: list[str] = []
@@ -99,6 +101,7 @@ def save_take_job(
     calibration_path: str,
     folder: Path,
     choice: MethodChoice,
+    placement: Placement,
 ) -> Job:
     """The job that stops the recording, saves and reconstructs it; its result is a SavedTake."""
     module = capture()
@@ -116,12 +119,12 @@ def save_take_job(
                 takes.get(path),
                 calibration=calibration_at(calibration_path),
                 choice=choice,
-                best_quality=False,
+                best_quality=has_best_quality(choice.method),
                 progress=progress,
             )
+            return SavedTake(path, warnings, placed(performance, placement, progress))
         except Exception as error:  # the take is saved all the same
             return SavedTake(path, warnings, None, one_line(error))
-        return SavedTake(path, warnings, performance)
 
     return Job(SAVING_TAKE, work)
 

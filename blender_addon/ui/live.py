@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from bpy.types import Context, Panel, UILayout
 
+from ..scene import live as live_scene
 from ..scene.settings import settings_of
 from ..session import live, sensors
 from ..session.calibrating import CALIBRATING
@@ -119,6 +120,7 @@ def _sensors(layout: UILayout, state: LiveState) -> None:
 def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
     state, quality = session.state, session.state.quality
     has_database = bool(settings_of(context.scene).database)
+    _character(layout, context)
     if session.is_live_wanted:
         row = layout.row()
         row.scale_y = 1.5
@@ -141,6 +143,22 @@ def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
         if dropped:
             rows.append(("Skipped", f"{dropped} poses"))
         text.facts(layout, rows)
+
+
+def _character(layout: UILayout, context: Context) -> None:
+    """Whom the live preview moves, and where it stands."""
+    settings, is_followed = settings_of(context.scene), live_scene.followed() is not None
+    row = layout.row()
+    row.enabled = not is_followed
+    row.prop(settings, "target", icon="ARMATURE_DATA")
+    row = layout.row(align=True)
+    row.prop(settings, "in_place", toggle=True)
+    buttons = row.row(align=True)
+    buttons.enabled = is_followed
+    buttons.operator("sparse_mocap.recentre")
+    buttons.operator("sparse_mocap.face_front")
+    if live_scene.ended_because():
+        text.error(layout, context, live_scene.ended_because())
 
 
 def _recording(layout: UILayout, context: Context, state: LiveState) -> None:

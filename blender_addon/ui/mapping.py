@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The mapping of the last imported skeleton in the sidebar."""
+"""The mapping of a character or of an imported file in the sidebar."""
 
 from bpy.types import Context, Panel
 
 from ..scene.mapping import mapping_of
+from ..scene.settings import settings_of
 from ..session.core import missing_reason
-from ..session.mapping import last_mapped
+from ..session.mapping import LABELS, label_of, last_mapped
 from . import text
 from .step import StepPanel
 
@@ -20,20 +21,34 @@ class SPARSEMOCAP_PT_mapping(StepPanel, Panel):
 
     @classmethod
     def poll(cls, context: Context) -> bool:
-        """Only after a file was imported."""
-        return not missing_reason() and bool(last_mapped)
+        """Only with a character or after a file was imported."""
+        if missing_reason():
+            return False
+        return bool(last_mapped) or settings_of(context.scene).target is not None
 
     def draw(self, context: Context) -> None:
-        """One row for each joint of the standard skeleton."""
-        layout, rows, last = self.layout, mapping_of(context), last_mapped[0]
-        text.paragraph(layout, context, f"Joints of {last.name}:")
+        """One row for each part of the body."""
+        layout, target = self.layout, settings_of(context.scene).target
+        last = last_mapped[0] if last_mapped else None
+        if target is not None and (last is None or last.name != target.name):
+            layout.operator("sparse_mocap.show_mapping", icon="VIEWZOOM")
+        if last is None:
+            return
+        rows = mapping_of(context)
+        text.paragraph(layout, context, f"Bones of {last.name}", icon="ARMATURE_DATA")
         if last.problem:
             text.error(layout, context, last.problem)
         column = layout.column(align=True)
-        column.use_property_split = True
-        column.use_property_decorate = False
         for row in rows.joints:
-            column.prop_search(row, "source", rows, "sources", text=row.name, icon="BONE_DATA")
+            if row.name not in LABELS and not row.source:
+                continue
+            split = column.split(factor=0.36, align=True)
+            split.label(text=label_of(row.name))
+            fields = split.row(align=True)
+            fields.prop_search(row, "source", rows, "sources", text="", icon="BONE_DATA")
+            if context.mode == "POSE":
+                pick = fields.operator("sparse_mocap.pick_bone", text="", icon="EYEDROPPER")
+                pick.joint = row.name
         row = layout.row(align=True)
         row.operator("sparse_mocap.remember_mapping", icon="CHECKMARK")
         row.operator("sparse_mocap.forget_mapping", icon="X")

@@ -37,12 +37,13 @@ class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
         if len(preset_items(settings.method)) > 1:
             layout.prop(settings, "preset")
         _quality(layout, settings)
-        layout.prop(settings, "start_frame")
         layout.prop(settings, "calibration")
-        if any(is_ours(obj) for obj in context.view_layer.objects):
-            row = layout.row()
-            row.use_property_split = False
-            row.prop(settings, "reuse_armature")
+        layout.separator()
+        character(layout, context)
+        layout.prop(settings, "start_frame")
+        column = layout.column(heading="Keys")
+        column.prop(settings, "whole_frames")
+        column.prop(settings, "extend_scene")
         is_ready = bool(settings.database and settings.take)
         action_button(
             layout, "sparse_mocap.reconstruct", "ARMATURE_DATA", RECONSTRUCTING, is_ready=is_ready
@@ -51,6 +52,21 @@ class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
             missing = "a take" if settings.database else "a motion database"
             text.paragraph(layout, context, f"Choose {missing} first", icon="INFO")
         _performed(layout, context)
+
+
+def character(layout: UILayout, context: Context) -> None:
+    """Whom the takes and the live preview move."""
+    settings = settings_of(context.scene)
+    layout.prop(settings, "target", icon="ARMATURE_DATA")
+    if settings.target is None:
+        text.paragraph(layout, context, "Empty: a figure of its own is made", icon="INFO")
+        if any(is_ours(obj) for obj in context.view_layer.objects):
+            row = layout.row()
+            row.use_property_split = False
+            row.prop(settings, "reuse_armature")
+    others = [obj for obj in context.selected_objects if obj.type == "ARMATURE"]
+    if settings.to_selected or any(obj != settings.target for obj in others):
+        layout.prop(settings, "to_selected")
 
 
 class SPARSEMOCAP_PT_options(StepPanel, Panel):

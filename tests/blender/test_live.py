@@ -137,6 +137,7 @@ def test_undo_and_deletion_end_live_without_harm(tmp_path):
         assert addon("scene.live").tick() is None
         assert not session.is_live_wanted
         assert session.is_running
+        assert "gone" in addon("scene.live").ended_because()
 
 
 def test_rendering_and_edit_mode_are_left_alone(tmp_path):

@@ -3,7 +3,8 @@ import json
 import os
 
 import bpy
-from support import addon, error_of, library
+import rigs
+from support import addon, error_of, library, settings
 
 
 def _import(tmp_path, **options):
@@ -77,3 +78,48 @@ def test_a_skeleton_that_is_no_person_is_shown_to_be_mended(tmp_path):
     assert rows.sources.keys() == ["a", "b"]
     assert addon("session.mapping").last_mapped[0].name == "snake"
     assert bpy.ops.sparse_mocap.import_bvh(filepath=str(path)) == {"FINISHED"}
+
+
+def _character(tmp_path, style="mixamo"):
+    os.environ["SPARSE_MOCAP_MAPPINGS"] = str(tmp_path / "mappings")
+    armature = rigs.named_rig(style)
+    settings().target = armature
+    return armature, bpy.context.window_manager.sparse_mocap_mapping
+
+
+def test_a_characters_mapping_is_shown_and_corrected_by_picking_bones(tmp_path):
+    armature, rows = _character(tmp_path)
+    assert bpy.ops.sparse_mocap.show_mapping() == {"FINISHED"}
+    assert rows.joints["lfemur"].source == "mixamorig:LeftUpLeg"
+    assert set(rows.sources.keys()) == {bone.name for bone in armature.data.bones}
+    assert "Pose Mode" in error_of(lambda: bpy.ops.sparse_mocap.pick_bone(joint="lowerback"))
+    armature.data.bones.active = armature.data.bones["mixamorig:Spine1"]
+    bpy.ops.object.mode_set(mode="POSE")
+    assert bpy.ops.sparse_mocap.pick_bone(joint="lowerback") == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    rows.joints["upperback"].source = ""
+    assert bpy.ops.sparse_mocap.remember_mapping() == {"FINISHED"}
+    target = addon("scene.binding").bind(bpy.context, armature)
+    assert target.character.joints["lowerback"] == "mixamorig:Spine1"
+    assert bpy.ops.sparse_mocap.forget_mapping() == {"FINISHED"}
+    target = addon("scene.binding").bind(bpy.context, armature)
+    assert target.character.joints["lowerback"] == "mixamorig:Spine"
+
+
+def test_a_rig_that_is_not_recognised_is_mapped_by_hand(tmp_path):
+    armature, rows = _character(tmp_path, "unknown")
+    extra = rigs.STYLES["unknown"].name("shank", "L")
+    bpy.ops.object.mode_set(mode="EDIT")
+    for number in range(3):  # no shape of a body any more
+        bone = armature.data.edit_bones.new(f"tail{number}")
+        bone.head, bone.tail = (0, 0, number), (0, 0.9, number + 0.5)
+        bone.parent = armature.data.edit_bones[extra]
+    bpy.ops.object.mode_set(mode="OBJECT")
+    named = rigs.STYLES["unknown"]
+    error_of(bpy.ops.sparse_mocap.show_mapping)
+    for joint, (part, side) in rigs.LIMBS.items():
+        rows.joints[joint].source = named.name(part, side)
+    rows.joints["head"].source = named.name("head")
+    assert bpy.ops.sparse_mocap.remember_mapping() == {"FINISHED"}
+    target = addon("scene.binding").bind(bpy.context, armature)
+    assert target.character.joints["ltibia"] == extra

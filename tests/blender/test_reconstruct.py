@@ -32,7 +32,7 @@ def _positions_at_rate(fps, fps_base, **options):
     render.fps, render.fps_base = fps, fps_base
     end = bpy.context.scene.frame_end
     choose_files()
-    armature = reconstruct(**options)
+    armature = reconstruct(whole_frames=False, **options)
     assert (render.fps, round(render.fps_base, 6)) == (fps, round(fps_base, 6))
     assert bpy.context.scene.frame_end == end
     motion = expected_performance(offline=options.get("offline", False)).motion
@@ -65,7 +65,7 @@ def test_positions_in_a_scene_of_centimetres():
     units = bpy.context.scene.unit_settings
     units.system, units.scale_length = "METRIC", 0.01
     choose_files()
-    armature = reconstruct()
+    armature = reconstruct(whole_frames=False)
     motion = expected_performance().motion
     wanted = 100.0 * in_blenders_axes(motion.joint_positions("world"))
     frame = 1.0 + 10 * motion.frame_time_s * 24
@@ -75,7 +75,7 @@ def test_positions_in_a_scene_of_centimetres():
 
 def test_keys_are_grouped_continuous_quaternions():
     choose_files()
-    armature = reconstruct()
+    armature = reconstruct(whole_frames=False)
     action = armature.animation_data.action
     assert action.name == "first_walk"
     assert action.use_fake_user
@@ -140,6 +140,7 @@ def test_one_undo_removes_everything():
 
 def test_second_take_goes_on_the_same_armature_and_actions_swap():
     choose_files()
+    settings().whole_frames = False
     first_armature = reconstruct().name
     armature = reconstruct(reuse_armature=True, offline=True)
     assert armature.name == first_armature
@@ -171,6 +172,7 @@ def test_a_new_armature_is_made_unless_told_otherwise():
 
 def test_scaled_and_moved_armature_takes_a_second_take():
     choose_files()
+    settings().whole_frames = False
     armature = reconstruct()
     armature.location, armature.scale = (1.0, 2.0, 3.0), (2.0, 2.0, 2.0)
     reconstruct(reuse_armature=True)
@@ -182,6 +184,7 @@ def test_scaled_and_moved_armature_takes_a_second_take():
 
 def test_bones_that_were_made_to_turn_otherwise_turn_by_the_keys():
     choose_files()
+    settings().whole_frames = False
     armature = reconstruct()
     armature.pose.bones["lhumerus"].rotation_mode = "XYZ"
     reconstruct(reuse_armature=True)
@@ -256,7 +259,9 @@ def test_numbers_that_are_none_leave_nothing_behind():
     motion.root_positions = np.full((motion.num_frames, 3), np.nan)
     motion.rotations = np.asarray(good.motion.rotations)
     bad = addon("session.reconstruct").Performance("bad", motion, 1.0, 0.0, False)
+    bake = addon("session.bake")
+    take = bake.PlacedTake(bad, bake.Placement(1.0, 24.0, False), motion, ())
     before = contents()
-    steps = performance_module.perform_steps(bpy.context, bad, 1.0, reuse=False)
+    steps = performance_module.perform_steps(bpy.context, take, None)
     assert "not finite numbers" in raised(ValueError, lambda: list(steps))
     assert contents() == before

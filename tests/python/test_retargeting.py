@@ -323,3 +323,35 @@ def test_inspect_shows_refusals_and_draws_a_sheet(cli: Cli, library: Path, tmp_p
     described = {Path(row["path"]).name: row for row in json.loads(report.read_text())}
     assert described["broken.bvh"]["refusal"]
     assert described[good.name]["limb_errors_deg"]["lfemur"]["mean"] < 0.5
+
+
+def test_a_skeleton_made_of_its_rest_pose() -> None:
+    names, parents = ["hips", "leg", "foot"], [-1, 0, 1]
+    pivots = np.array([[0.0, 1.0, 0.0], [0.1, 0.9, 0.0], [0.1, 0.1, 0.05]])
+    ends = np.array([[0.0, 1.1, 0.0], [0.1, 0.1, 0.0], [0.1, 0.0, 0.2]])
+    skeleton = sparse_mocap.Skeleton(names, parents, pivots, ends)
+    rotations = np.tile([1.0, 0.0, 0.0, 0.0], (1, 3, 1))
+    motion = sparse_mocap.Motion(skeleton, 0.1, pivots[:1], rotations)
+    np.testing.assert_allclose(motion.pivot_positions()[0], pivots, atol=1e-12)
+    np.testing.assert_allclose(motion.joint_positions("world")[0], ends, atol=1e-12)
+    with pytest.raises(ValueError, match="leg"):
+        sparse_mocap.Skeleton(["hips", "leg", "leg"], parents, pivots, ends)
+    with pytest.raises(ValueError, match="parents"):
+        sparse_mocap.Skeleton(names, parents[:2], pivots, ends)
+    with pytest.raises(ValueError, match="pivots"):
+        sparse_mocap.Skeleton(names, parents, pivots[:2], ends)
+
+
+def test_only_turned_joints_move_on_a_rig() -> None:
+    skeleton = sparse_mocap.body_of_height(1.75).skeleton
+    frames, joints = 5, len(skeleton.names)
+    random = np.random.default_rng(1)
+    rotations = np.array([1.0, 0.0, 0.0, 0.0]) + random.normal(0.0, 0.1, (frames, joints, 4))
+    still = sparse_mocap.Motion(skeleton, 0.1, np.zeros((frames, 3)), rotations)
+    mapping = sparse_mocap.map_skeleton(still)
+    moved = mapping.to_rig(still)
+    changes = np.ptp(moved.rotations, axis=0).max(axis=1)
+    moving = {skeleton.names[joint] for joint in np.flatnonzero(changes > 1e-9)}
+    assert moving == set(mapping.turned_joints)
+    assert set(mapping.joints.values()) >= moving
+    assert mapping.ankles == ("", "")

@@ -2,6 +2,7 @@
 #include "sparse_mocap/retargeting/to_rig.hpp"
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "sparse_mocap/retargeting/rest_alignment.hpp"
@@ -19,16 +20,20 @@ struct TurningBone {
   Mat3 R_standard_joint = Mat3::Identity();
 };
 
-// The mapping seen from the rig: what turns each of its joints. The pelvis is turned by the root
-// alone, though the lower back may begin at it.
+// The pelvis is turned by the root alone, though the lower back may begin at it.
+bool is_turned_by(const SkeletonMapping& mapping, int joint, int standard) {
+  const int pelvis = mapping.joints.standard[standard_joint::root];
+  return (joint == pelvis) == (standard == standard_joint::root);
+}
+
+// The mapping seen from the rig: what turns each of its joints.
 std::vector<std::vector<TurningBone>> turning_bones(const SkeletonMapping& mapping,
                                                     const Skeleton& standard, int num_joints) {
   std::vector<std::vector<TurningBone>> turning(at(num_joints));
   const JointMapping aligned = aligned_to(mapping, standard);
-  const int pelvis = mapping.joints.standard[standard_joint::root];
   for (int s = 0; s < kNumStandardJoints; ++s) {
     for (const auto& mapped : aligned[at(s)]) {
-      if ((mapped.joint == pelvis) != (s == standard_joint::root)) continue;
+      if (!is_turned_by(mapping, mapped.joint, s)) continue;
       const double length = s == standard_joint::root ? 1.0 : mapping.bones[at(s)].norm();
       turning[at(mapped.joint)].push_back(
           {s, mapped.weight * length, mapped.R_joint_standard.transpose()});
@@ -103,6 +108,14 @@ Motion to_rig(const Motion& motion, const SkeletonMapping& mapping, const Skelet
   ToRig frames(mapping, motion.skeleton, rig);
   for (int t = 0; t < motion.num_frames(); ++t) frames.add(motion.transforms(t), out);
   return out;
+}
+
+std::vector<int> turned_joints(const SkeletonMapping& mapping) {
+  std::set<int> turned;
+  for (int s = 0; s < kNumStandardJoints; ++s)
+    for (const auto& mapped : mapping.joint_mapping[at(s)])
+      if (is_turned_by(mapping, mapped.joint, s)) turned.insert(mapped.joint);
+  return {turned.begin(), turned.end()};
 }
 
 }  // namespace sparse_mocap

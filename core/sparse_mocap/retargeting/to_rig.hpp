@@ -15,4 +15,7 @@ namespace sparse_mocap {
 // of joints, or the motion is not on a standard skeleton.
 Motion to_rig(const Motion& standard_motion, const SkeletonMapping& mapping, const Skeleton& rig);
 
+// The rig's joints that to_rig turns, ascending.
+std::vector<int> turned_joints(const SkeletonMapping& mapping);
+
 }  // namespace sparse_mocap

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A take on a character as an action: keys of its controls alone, in each one's rotation mode."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+
+import bpy
+import numpy as np
+from bpy.types import Action, Object
+from mathutils import Euler, Quaternion
+
+from ..session.errors import InputError
+from ..session.retarget import RigTake
+from ..session.steps import Steps, part
+from .action import LOCATION, set_keys
+from .axes import Floats
+from .compat import Curves, curves_for
+
+_CHUNK = 2000  # keys that are converted between two redraws
+
+
+def rig_action_steps(name: str, armature: Object, take: RigTake, frames: Floats) -> Steps[Action]:
+    """A new action for the armature, made step by step; yields the fraction done.
+
+    What the armature's own action does with other bones and properties is copied. Raises
+    InputError when a bone is gone; nothing is left behind then, nor when the steps are closed.
+    """
+    controls = take.target.controls
+    missing = [one.name for one in controls.controls if one.name not in armature.pose.bones]
+    if missing:
+        raise InputError(f'"{armature.name}" has no bone "{missing[0]}" any more: bake again')
+    action, curves = _action_for(name, armature, take)
+    try:
+        action.use_fake_user = True
+        for path, value in controls.properties.items():
+            curve = curves.new(path, -1, _bone_in(path))
+            set_keys(curve, frames[:1], np.array([value]), "CONSTANT")
+        for number, control in enumerate(controls.controls):
+            tracks = []
+            if number == controls.mover.control:
+                tracks.append((LOCATION, take.location))
+            if control.turned >= 0:
+                mode = armature.pose.bones[control.name].rotation_mode
+                turned = yield from part(
+                    _in_mode_steps(take.quaternions[:, number], mode),
+                    number / len(controls.controls),
+                    0.0,
+                )
+                tracks.append((_rotation_path(mode), turned))
+            for what, track in tracks:
+                path = f'pose.bones["{bpy.utils.escape_identifier(control.name)}"].{what}'
+                for index, values in enumerate(track.T):
+                    action.name  # noqa: B018 - raises ReferenceError after an undo
+                    set_keys(curves.new(path, index, control.name), frames, values)
+                    yield (number + (index + 1) / len(track.T)) / len(controls.controls)
+    except BaseException:
+        with suppress(ReferenceError):
+            bpy.data.actions.remove(action)
+        raise
+    return action
+
+
+def _action_for(name: str, armature: Object, take: RigTake) -> tuple[Action, Curves]:
+    """A new action, with the curves of the armature's own one that the take leaves alone."""
+    data = armature.animation_data
+    old = data.action if data is not None else None
+    controls = take.target.controls
+    keyed = {
+        f'pose.bones["{bpy.utils.escape_identifier(control.name)}"]'
+        for control in controls.controls
+    }
+    if old is not None:
+        action = old.copy()
+        curves = curves_for(action, getattr(data, "action_slot", None))
+        others = [curve for curve in curves.all() if not _is_keyed(curve.data_path, keyed)]
+        if others:
+            action.name = name
+            for curve in curves.all():
+                if _is_keyed(curve.data_path, keyed) or curve.data_path in controls.properties:
+                    curves.remove(curve)
+            return action, curves
+        bpy.data.actions.remove(action)
+    action = bpy.data.actions.new(name)
+    return action, curves_for(action, None)
+
+
+def _is_keyed(path: str, keyed: set[str]) -> bool:
+    """Whether a curve turns or moves one of these bones."""
+    bone, _, what = path.rpartition(".")
+    return bone in keyed and (what.startswith("rotation_") or what == LOCATION)
+
+
+def _bone_in(path: str) -> str:
+    return path.split('"')[1]
+
+
+def _rotation_path(mode: str) -> str:
+    return {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}.get(
+        mode, "rotation_euler"
+    )
+
+
+def _in_mode_steps(quaternions: Floats, mode: str) -> Steps[Floats]:
+    """(T, 3 or 4) rotations in a bone's rotation mode, without jumps."""
+    if mode == "QUATERNION":
+        return quaternions
+    rows: list[tuple[float, ...]] = []
+    last: Euler | None = None
+    for number, values in enumerate(quaternions):
+        turned = Quaternion(values)
+        if mode == "AXIS_ANGLE":
+            axis, angle = turned.to_axis_angle()
+            if rows and axis.dot(rows[-1][1:]) < 0.0:
+                axis, angle = -axis, -angle
+            rows.append((angle, *axis))
+        else:
+            last = turned.to_euler(mode, last) if last is not None else turned.to_euler(mode)
+            rows.append(tuple(last))
+        if number % _CHUNK == _CHUNK - 1:
+            yield number / len(quaternions)
+    return np.array(rows)

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One pose after another on a character's controls, in each one's rotation mode."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from bpy.types import Object
+from mathutils import Quaternion
+
+from ..session.controls import channels
+from ..session.retarget import Target, quaternions_of
+from .binding import set_properties
+
+
+class RigPose:
+    """Shows poses of the standard skeleton on a character as they come."""
+
+    def __init__(self, target: Target) -> None:
+        self.target = target
+        self.bones = [control.name for control in target.controls.controls]
+        self._lowest_m: float | None = None  # that an ankle was, above where it stands
+
+    def begin(self, armature: Object) -> None:
+        """Set the custom properties that the controls need."""
+        set_properties(armature, self.target.controls.properties)
+
+    def show(self, armature: Object, motion: Any) -> None:
+        """Show a motion of one frame; the lowest foot so far stands on the floor."""
+        moved = self.target.character.motion(motion)
+        above = float(moved.above_floor_m[0])
+        self._lowest_m = above if self._lowest_m is None else min(self._lowest_m, above)
+        controls = self.target.controls
+        found = channels(controls, moved.lifted(-self._lowest_m))
+        quaternions = quaternions_of(found.rotations[0])
+        for number, control in enumerate(controls.controls):
+            bone = armature.pose.bones[control.name]
+            if control.turned >= 0:
+                turned = Quaternion(quaternions[number])
+                if bone.rotation_mode == "QUATERNION":
+                    bone.rotation_quaternion = turned
+                elif bone.rotation_mode == "AXIS_ANGLE":
+                    axis, angle = turned.to_axis_angle()
+                    bone.rotation_axis_angle = (angle, *axis)
+                else:
+                    bone.rotation_euler = turned.to_euler(bone.rotation_mode, bone.rotation_euler)
+            if number == controls.mover.control:
+                bone.location = found.location[0]
