@@ -28,6 +28,7 @@ import sparse_mocap
 
 from blender_addon.scene.action import frames_of, make_action
 from blender_addon.scene.armature import new_armature
+from blender_addon.scene.body import new_body
 from blender_addon.scene.compat import assign_action
 
 NUM_MOMENTS = 6
@@ -43,24 +44,6 @@ COLUMN = 1.62
 ROW = 7.0
 WIDTH = 11.3
 TURN = math.radians(25.0)  # figures are seen a little from the side
-
-# Radii of a bone's beginning and end, metres.
-RADII = {
-    "lowerback": (0.105, 0.105),
-    "upperback": (0.105, 0.125),
-    "thorax": (0.130, 0.100),
-    "lowerneck": (0.060, 0.050),
-    "upperneck": (0.050, 0.050),
-    "head": (0.085, 0.095),
-    "hipjoint": (0.095, 0.085),
-    "femur": (0.085, 0.055),
-    "tibia": (0.055, 0.040),
-    "clavicle": (0.080, 0.062),
-    "humerus": (0.058, 0.042),
-    "radius": (0.042, 0.032),
-    "wrist": (0.034, 0.022),
-}
-OTHER_RADII = (0.04, 0.035)
 
 
 @dataclass(frozen=True)
@@ -110,67 +93,8 @@ def figure(name: str, path: Path, colour: tuple[float, float, float]) -> Figure:
     times_s = np.arange(motion.num_frames) * motion.frame_time_s
     frames = frames_of(bpy.context.scene, times_s, 1.0)
     assign_action(armature, make_action(name, rig, motion, frames))
-    return Figure(armature, new_body(armature, name, plain_material(name, colour)), times_s[-1])
-
-
-def new_body(armature: Object, name: str, material: Material) -> Object:
-    """A body of one capsule a bone, moved by the armature."""
-    vertices: list[np.ndarray] = []
-    faces: list[tuple[int, ...]] = []
-    groups: dict[str, range] = {}
-    for bone in armature.data.bones:
-        if bone.parent is None:
-            continue
-        points, quads = capsule(
-            np.array(bone.head_local), np.array(bone.tail_local), *radii(bone.name)
-        )
-        begin = sum(len(part) for part in vertices)
-        faces += [tuple(index + begin for index in quad) for quad in quads]
-        vertices.append(points)
-        groups[bone.name] = range(begin, begin + len(points))
-    mesh = bpy.data.meshes.new(f"{name} body")
-    mesh.from_pydata(np.concatenate(vertices).tolist(), [], faces)
-    mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
-    mesh.materials.append(material)
-    body = add(f"{name} body", mesh)
-    for bone, indices in groups.items():
-        body.vertex_groups.new(name=bone).add(list(indices), 1.0, "REPLACE")
-    body.modifiers.new("Armature", "ARMATURE").object = armature
-    body.parent = armature
-    return body
-
-
-def radii(bone: str) -> tuple[float, float]:
-    """The radii of a bone, the same on both sides."""
-    return RADII.get(bone) or RADII.get(bone[1:], OTHER_RADII)
-
-
-def capsule(
-    head: np.ndarray, tail: np.ndarray, head_radius: float, tail_radius: float
-) -> tuple[np.ndarray, list[tuple[int, ...]]]:
-    """Vertices and quads of a tapered rod with round ends."""
-    segments, half_rings = 20, 6
-    along = (tail - head) / np.linalg.norm(tail - head)
-    aside = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
-    aside /= np.linalg.norm(aside)
-    third = np.cross(along, aside)
-    rise = np.linspace(-0.499 * np.pi, 0.0, half_rings)
-    centres = [head] * half_rings + [tail] * half_rings
-    sizes = [head_radius] * half_rings + [tail_radius] * half_rings
-    turns = np.linspace(0.0, 2.0 * np.pi, segments, endpoint=False)
-    circle = np.cos(turns)[:, None] * aside + np.sin(turns)[:, None] * third
-    rings = [
-        centre + size * (np.sin(angle) * along + np.cos(angle) * circle)
-        for centre, size, angle in zip(
-            centres, sizes, np.concatenate([rise, -rise[::-1]]), strict=True
-        )
-    ]
-    quads = [
-        (ring + i, ring + j, ring + segments + j, ring + segments + i)
-        for ring in range(0, (len(rings) - 1) * segments, segments)
-        for i, j in zip(range(segments), [*range(1, segments), 0], strict=True)
-    ]
-    return np.concatenate(rings), quads
+    body = new_body(bpy.context, armature, plain_material(name, colour))
+    return Figure(armature, body, times_s[-1])
 
 
 # --- The stage -----------------------------------------------------------------------------------
@@ -259,7 +183,7 @@ def placement(shown: Figure, place: Vector, turn: float) -> Matrix:
     evaluated = shown.armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
     bones, world = evaluated.pose.bones, evaluated.matrix_world
     root = world @ bones[0].head
-    to_left = (world @ bones["lhipjoint"].tail) - (world @ bones["rhipjoint"].tail)
+    to_left = (world @ bones["hip.L"].tail) - (world @ bones["hip.R"].tail)
     heading = math.atan2(to_left.y, to_left.x)
     return (
         Matrix.Translation(place)

@@ -17,6 +17,7 @@ from ..session.port_scanner import port_scanner
 from ..session.take import takes
 from . import (
     calibrate,
+    character,
     clips,
     database,
     import_motion,
@@ -37,6 +38,7 @@ CLASSES = (
     *reconstruct.CLASSES,
     *live.CLASSES,
     *calibrate.CLASSES,
+    *character.CLASSES,
 )
 
 

@@ -16,6 +16,7 @@ from mathutils import Vector
 from ..session.errors import InputError
 from ..session.names import fitting
 from .axes import Floats, rest_pivots_and_ends, to_blender
+from .figure import beyond, figure_names, leg_length
 
 MARK = "sparse_mocap"  # custom property of armatures that this add-on made
 NAME = "Sparse Mocap"
@@ -51,23 +52,38 @@ class Rig:
     units_per_metre: float
 
 
-def rest_bones(skeleton: Any) -> RestBones:
-    """The rest pose of a skeleton (sparse_mocap.Skeleton)."""
+def rest_bones(skeleton: Any, *, is_figure: bool = False) -> RestBones:
+    """The rest pose of a skeleton (sparse_mocap.Skeleton).
+
+    is_figure: named as the add-on's own figure is, with its feet, toes and hands at the end.
+    """
     parents, names = list(skeleton.parents), list(skeleton.names)
     pivots, ends = rest_pivots_and_ends(parents, skeleton.offsets, skeleton.bones)
     size_m = float(np.ptp(np.concatenate([pivots, ends]), axis=0).max())
     size = size_m / _USUAL_HEIGHT_M or 1.0
     tails = np.array([_tail(joint, parents, pivots, ends, size) for joint in range(len(parents))])
+    if is_figure:
+        leg_m = leg_length(names, np.asarray(skeleton.bones))
+        names = figure_names(names)
+        for name, parent, head, tail in beyond(names, pivots, tails, leg_m):
+            names, parents = [*names, name], [*parents, parent]
+            pivots, tails = np.vstack([pivots, head]), np.vstack([tails, tail])
+            ends = np.vstack([ends, tail])
     lift = -min(pivots[:, 1].min(), ends[:, 1].min()) * _UP
     return RestBones(fitting(names), parents, pivots + lift, tails + lift)
 
 
 def new_armature(
-    context: Context, skeleton: Any, name: str = NAME, *, is_standard: bool = True
+    context: Context,
+    skeleton: Any,
+    name: str = NAME,
+    *,
+    is_figure: bool = True,
+    is_reusable: bool = True,
 ) -> Rig:
     """A new armature of the skeleton in the scene, active and alone selected.
 
-    is_standard: whether takes may be put on it later.
+    is_figure: as for rest_bones; is_reusable: whether takes may be put on it later.
     Raises InputError when the scene cannot hold one; nothing is left behind then.
     """
     _leave_mode(context)
@@ -79,7 +95,7 @@ def new_armature(
         select_only(context, armature)
         bpy.ops.object.mode_set(mode="EDIT")
         try:
-            bones = rest_bones(skeleton)
+            bones = rest_bones(skeleton, is_figure=is_figure)
             _add_bones(data, bones, scale)
         finally:
             bpy.ops.object.mode_set(mode="OBJECT")
@@ -87,10 +103,10 @@ def new_armature(
         remove_armature(armature)
         raise
     use_quaternions(armature)
-    if is_standard:
+    if is_reusable:
         data[MARK] = ",".join(skeleton.names)
     armature.show_in_front = True
-    return Rig(armature, bones.names, scale)
+    return Rig(armature, bones.names[: len(skeleton.names)], scale)
 
 
 def remove_armature(armature: Object) -> None:
@@ -136,6 +152,9 @@ def units_per_metre(scene: Scene) -> float:
 def rig_of(armature: Object, skeleton: Any) -> Rig:
     """The rig of an existing armature. Raises InputError when it has another skeleton."""
     bones = rest_bones(skeleton)
+    named = figure_names(bones.names)
+    if named[0] in armature.data.bones:
+        bones = RestBones(named, bones.parents, bones.heads, bones.tails)
     missing = [name for name in bones.names if name not in armature.data.bones]
     if missing:
         raise InputError(f'"{armature.name}" has no bone {missing[0]}: untick "Reuse armature"')

@@ -34,7 +34,11 @@ def import_steps(
         try:
             for motion in motions:
                 rig = new_armature(
-                    context, motion.skeleton, motion.name, is_standard=motion.is_standard
+                    context,
+                    motion.skeleton,
+                    motion.name,
+                    is_figure=motion.is_standard,
+                    is_reusable=motion.is_standard,
                 )
                 made.append(rig.armature)
                 yield (len(made) - 1) * share

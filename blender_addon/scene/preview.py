@@ -49,7 +49,7 @@ def show_clip(context: Context, motion: Any, name: str) -> Object:
             except InputError:  # made for another database
                 rig = None
         if rig is None:
-            rig, is_new = new_armature(context, motion.skeleton, NAME, is_standard=False), True
+            rig, is_new = new_armature(context, motion.skeleton, NAME, is_reusable=False), True
         times_s = np.arange(motion.num_frames) * motion.frame_time_s
         try:
             frames = frames_of(context.scene, times_s, float(first_frame(context.scene)))

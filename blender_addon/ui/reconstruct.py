@@ -101,6 +101,8 @@ def _quality(layout: UILayout, settings: SPARSEMOCAP_PG_settings) -> None:
 
 def _performed(layout: UILayout, context: Context) -> None:
     """What the active armature performs."""
+    if is_ours(context.view_layer.objects.active):
+        layout.operator("sparse_mocap.add_body", icon="OUTLINER_OB_MESH")
     action = performed_action(context.view_layer.objects.active)
     facts = None if action is None else facts_of(action)
     if action is not None and facts is not None:

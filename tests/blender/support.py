@@ -162,7 +162,7 @@ def evaluated_points(armature, frame: float, names: list[str]) -> np.ndarray:
     whole = int(np.floor(frame))
     bpy.context.scene.frame_set(whole, subframe=frame - whole)
     evaluated = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    bones = [evaluated.pose.bones[name] for name in names]
+    bones = [evaluated.pose.bones[name] for name in bones_of(armature, names)]
     points = [bones[0].head, *(bone.tail for bone in bones[1:])]
     return np.array([evaluated.matrix_world @ point for point in points])
 
@@ -171,8 +171,15 @@ def evaluated_pivots(armature, frame: int, names: list[str]) -> np.ndarray:
     """(J, 3) where the bones begin in the world at a frame, Blender's axes."""
     bpy.context.scene.frame_set(frame)
     evaluated = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    heads = [evaluated.pose.bones[name].head for name in names]
+    heads = [evaluated.pose.bones[name].head for name in bones_of(armature, names)]
     return np.array([evaluated.matrix_world @ head for head in heads])
+
+
+def bones_of(armature, joints: list[str]) -> list[str]:
+    """The bones of joints: as they are called, or as the add-on's own figure calls them."""
+    if joints[0] in armature.data.bones:
+        return joints
+    return addon("scene.figure").figure_names(joints)
 
 
 def in_blenders_axes(positions) -> np.ndarray:

@@ -15,6 +15,7 @@ from live_support import emulated, is_alive, own_runtime, serial_folder, until
 from support import (
     Skipped,
     addon,
+    bones_of,
     error_of,
     in_blenders_axes,
     library,
@@ -86,7 +87,7 @@ def test_the_shown_pose_is_the_cores(tmp_path):
         wanted = in_blenders_axes(motion.joint_positions("world"))[0]
         bpy.context.view_layer.update()
         evaluated = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
-        bones = [evaluated.pose.bones[name] for name in skeleton.names]
+        bones = [evaluated.pose.bones[name] for name in bones_of(armature, skeleton.names)]
         ends = np.array([bones[0].head, *(bone.tail for bone in bones[1:])])
         have_length = np.linalg.norm(skeleton.bones, axis=1) > 0.001
         have_length[0] = True

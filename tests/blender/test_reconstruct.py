@@ -89,8 +89,8 @@ def test_keys_are_grouped_continuous_quaternions():
         assert {key.interpolation for key in curve.keyframe_points} == {"LINEAR"}
         by_path.setdefault(curve.data_path, {})[curve.array_index] = keys[:, 1]
     rotations = [path for path in by_path if path.endswith("rotation_quaternion")]
-    assert len(rotations) == len(armature.data.bones) == 21
-    assert set(by_path) - set(rotations) == {'pose.bones["root"].location'}
+    assert len(rotations) == 21
+    assert set(by_path) - set(rotations) == {'pose.bones["pelvis"].location'}
     for path in rotations:
         quaternions = np.column_stack([by_path[path][index] for index in range(4)])
         assert np.allclose(np.linalg.norm(quaternions, axis=1), 1.0, atol=1e-4)
@@ -103,12 +103,48 @@ def test_rest_pose_stands_on_the_ground_and_faces_front():
     bones = reconstruct().data.bones
     heights = [point.z for bone in bones for point in (bone.head_local, bone.tail_local)]
     assert abs(min(heights)) < 1e-4
-    assert 1.2 < max(heights) < 2.2
-    assert bones["lhumerus"].tail_local.x > 0.2  # the character's left
-    assert bones["lwrist"].parent == bones["lradius"]
-    up = bones["root"].tail_local - bones["root"].head_local
+    assert 1.3 < max(heights) < 2.2
+    assert bones["upper_arm.L"].tail_local.x > 0.2  # the character's left
+    assert bones["wrist.L"].parent == bones["forearm.L"]
+    assert bones["toe.L"].parent.parent == bones["foot.L"].parent == bones["shin.L"]
+    assert bones["toe.L"].tail_local.y < bones["shin.L"].tail_local.y - 0.1
+    for bone in bones:
+        other = bpy.utils.flip_name(bone.name)
+        assert (other != bone.name) == bone.name.endswith((".L", ".R"))
+        assert np.allclose(
+            np.array(bones[other].head_local) * [-1, 1, 1], bone.head_local, atol=1e-4
+        )
+    up = bones["pelvis"].tail_local - bones["pelvis"].head_local
     assert up.z > 0.05
     assert abs(up.x) + abs(up.y) < 1e-6
+
+
+def test_the_figure_gets_a_body_that_moves_with_it():
+    choose_files()
+    armature = reconstruct()
+    assert bpy.ops.sparse_mocap.add_body() == {"FINISHED"}
+    [body] = armature.children
+    found = []
+    for frame in (1, 40):
+        bpy.context.scene.frame_set(frame)
+        evaluated = body.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        found.append(np.array([tuple(vertex.co) for vertex in evaluated.data.vertices]))
+    assert np.abs(found[0] - found[1]).max() > 0.05
+    rest = np.array([tuple(vertex.co) for vertex in body.data.vertices])
+    assert -0.03 < rest[:, 2].min() <= 0.0
+    assert 1.4 < rest[:, 2].max() < 2.0
+    assert not bpy.ops.sparse_mocap.add_body.poll()
+
+
+def test_an_armature_of_the_release_before_takes_takes():
+    choose_files()
+    motion = expected_performance().motion
+    armature_module = addon("scene.armature")
+    old = armature_module.new_armature(bpy.context, motion.skeleton, is_figure=False).armature
+    assert "lfemur" in old.data.bones
+    assert reconstruct(reuse_armature=True, whole_frames=False) == old
+    wanted = in_blenders_axes(motion.joint_positions("world"))[0]
+    assert np.abs(evaluated_points(old, 1.0, motion.skeleton.names) - wanted).max() < 1e-3
 
 
 def test_armature_is_selected_alone():
@@ -147,7 +183,7 @@ def test_second_take_goes_on_the_same_armature_and_actions_swap():
     assert [len(bpy.data.objects), len(bpy.data.armatures), len(bpy.data.actions)] == [1, 1, 2]
     first, second = bpy.data.actions["first_walk"], bpy.data.actions["first_walk.001"]
     assert armature.animation_data.action == second
-    names = list(armature.data.bones.keys())
+    names = list(expected_performance().motion.skeleton.names)
     frame = 1.0 + 20 * 24 / 25
     found = {}
     for action in (first, second, first):
@@ -186,7 +222,7 @@ def test_bones_that_were_made_to_turn_otherwise_turn_by_the_keys():
     choose_files()
     settings().whole_frames = False
     armature = reconstruct()
-    armature.pose.bones["lhumerus"].rotation_mode = "XYZ"
+    armature.pose.bones["upper_arm.L"].rotation_mode = "XYZ"
     reconstruct(reuse_armature=True)
     motion = expected_performance().motion
     wanted = in_blenders_axes(motion.joint_positions("world"))[0]
@@ -239,14 +275,14 @@ def test_armatures_that_do_not_fit_are_refused():
     choose_files()
     armature = reconstruct()
     bpy.ops.object.mode_set(mode="EDIT")
-    armature.data.edit_bones["lfemur"].tail.z -= 0.1
+    armature.data.edit_bones["thigh.L"].tail.z -= 0.1
     bpy.ops.object.mode_set(mode="OBJECT")
     line = error_of(lambda: bpy.ops.sparse_mocap.reconstruct(reuse_armature=True))
     assert "proportions" in line
     bpy.ops.object.mode_set(mode="EDIT")
-    armature.data.edit_bones.remove(armature.data.edit_bones["lfemur"])
+    armature.data.edit_bones.remove(armature.data.edit_bones["thigh.L"])
     bpy.ops.object.mode_set(mode="OBJECT")
-    assert "lfemur" in error_of(lambda: bpy.ops.sparse_mocap.reconstruct(reuse_armature=True))
+    assert "thigh.L" in error_of(lambda: bpy.ops.sparse_mocap.reconstruct(reuse_armature=True))
 
 
 def test_numbers_that_are_none_leave_nothing_behind():
