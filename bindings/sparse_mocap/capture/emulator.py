@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Emulates devices: plays a take over pseudo-terminals in a device's protocol.
+"""Emulates devices: plays a take in a device's protocol.
 
 Packets are sent at absolute times, counted from the moment a host opens the port, without waiting
-for the host: as with a real device, what the host does not read in time is lost. Pseudo-terminals
-need POSIX, so this does not work on Windows.
+for the host: as with a real device, what the host does not read in time is lost.
 """
 
 from __future__ import annotations
 
-import errno
 import os
 import random
-import select
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -22,7 +19,7 @@ from numpy.typing import NDArray
 
 from ..take import Take
 from .drivers import Encoder, can_share_a_port, with_rate
-from .errors import CaptureError
+from .emulated_port import EmulatedPort, PseudoTerminal, TcpPort
 from .sample_log import SAMPLE, Samples
 
 __all__ = ["Emulator", "Faults", "Line", "instants", "period_s"]
@@ -58,63 +55,13 @@ class Faults:
 
 @dataclass
 class Line:
-    """One pseudo-terminal and its sensors."""
+    """One port and its sensors."""
 
     sensors: tuple[int, ...]
     encoder: Encoder
-    link_path: Path | None = None
-    master: int = -1
+    port: EmulatedPort
     path: str = ""
-
-    def plug_in(self) -> None:
-        """Creates the pseudo-terminal in raw mode, so that nothing is echoed or changed."""
-        import tty
-
-        self.master, slave = os.openpty()
-        tty.setraw(slave)
-        self.path = os.ttyname(slave)
-        os.close(slave)
-        os.set_blocking(self.master, False)
-        if self.link_path is not None:
-            beside = self.link_path.with_name(f".{self.link_path.name}.{os.getpid()}")
-            beside.symlink_to(self.path)
-            beside.replace(self.link_path)
-
-    def unplug(self) -> None:
-        """Removes the pseudo-terminal."""
-        if self.master >= 0:
-            os.close(self.master)
-            self.master = -1
-        if self.link_path is not None:
-            self.link_path.unlink(missing_ok=True)
-
-    def is_open(self) -> bool:
-        """Whether a host has the port open."""
-        if self.master < 0:
-            return False
-        poller = select.poll()
-        poller.register(self.master, 0)
-        return not any(event & select.POLLHUP for _, event in poller.poll(0))
-
-    def send(self, data: bytes) -> bool:
-        """Sends what fits into the host's buffer; returns False when that was not all."""
-        if not self.is_open():  # a closed port does not buffer
-            return True
-        try:
-            return os.write(self.master, data) == len(data)
-        except BlockingIOError:
-            return False
-        except OSError as error:
-            if error.errno != errno.EIO:
-                raise
-            return False
-
-    def received(self) -> bytes:
-        """What the host sent."""
-        try:
-            return os.read(self.master, 4096)
-        except (BlockingIOError, OSError):
-            return b""
+    """The name by which a host opens the port."""
 
 
 @dataclass
@@ -128,6 +75,8 @@ class Emulator:
     faults: Faults = field(default_factory=Faults)
     link_path: Path | None = None
     """A symbolic link to the (first) pseudo-terminal, kept up to date."""
+    over_tcp: bool = not hasattr(os, "openpty")
+    """Ports are pseudo-terminals, or TCP ports of this machine."""
 
     begin_ns: int = 0
     """When the take's begin was sent, on this machine's monotonic clock; 0: not yet."""
@@ -145,25 +94,26 @@ class Emulator:
         self._settings = with_rate(self.driver, self.options, 1.0 / period_s(self.take))
         if can_share_a_port(self.driver, self.take.sites, self._settings):
             groups = [tuple(range(count))]
+        kind = TcpPort if self.over_tcp else PseudoTerminal
         self.lines = [
-            Line(sensors, self._new_encoder(sensors), self.link_path if index == 0 else None)
+            Line(
+                sensors,
+                self._new_encoder(sensors),
+                kind(self.link_path if index == 0 else None),
+            )
             for index, sensors in enumerate(groups)
         ]
 
     def plug_in(self) -> list[str]:
-        """Creates the ports and returns their paths. Raises CaptureError on Windows."""
-        if not hasattr(os, "openpty"):
-            raise CaptureError(
-                "this system has no pseudo-terminals; use the emulator on Linux or macOS"
-            )
+        """Creates the ports and returns their paths, or URLs of TCP ports."""
         for line in self.lines:
-            line.plug_in()
+            line.path = line.port.plug_in()
         return [line.path for line in self.lines]
 
     def close(self) -> None:
         """Removes the ports."""
         for line in self.lines:
-            line.unplug()
+            line.port.unplug()
 
     def run(
         self,
@@ -171,7 +121,7 @@ class Emulator:
         replugged: Callable[[list[str]], None] = lambda paths: None,
     ) -> None:
         """Plays the take once, as soon as a host has opened every port."""
-        if not self._wait(lambda: all(line.is_open() for line in self.lines), must_end):
+        if not self._wait(lambda: all(line.port.is_open() for line in self.lines), must_end):
             return
         due = instants(self.take)
         for line in self.lines:
@@ -195,7 +145,7 @@ class Emulator:
         for line in self.lines:
             own = samples[np.isin(samples["sensor"], line.sensors)].copy()
             own["sensor"] -= line.sensors[0]
-            if not len(own) or line.master < 0:
+            if not len(own) or not line.port.is_plugged_in:
                 continue
             if _is_within(time_s, self.faults.garbage):
                 self._send(line, [self._random.randbytes(32 * len(own))])
@@ -217,7 +167,7 @@ class Emulator:
             if self.faults.corruption > 0.0:
                 packet = self._corrupted(packet)
             self.num_sent += 1
-            self.num_overrun += not line.send(packet)
+            self.num_overrun += not line.port.send(packet)
 
     def _corrupted(self, packet: bytes) -> bytes:
         return bytes(
@@ -250,7 +200,7 @@ class Emulator:
         self._start_s = time_s
         for line in self.lines:
             line.encoder = self._new_encoder(line.sensors)
-            if line.master >= 0:
+            if line.port.is_plugged_in:
                 self._send(line, line.encoder.hello())
 
     def _new_encoder(self, sensors: Sequence[int]) -> Encoder:
@@ -266,10 +216,10 @@ class Emulator:
 
     def _answer(self) -> None:
         for line in self.lines:
-            if line.master >= 0 and (request := line.received()):
+            if line.port.is_plugged_in and (request := line.port.received()):
                 answer = line.encoder.respond(request)
                 if answer:
-                    line.send(answer)
+                    line.port.send(answer)
 
     def _wait(self, is_so: Callable[[], bool], must_end: Callable[[], bool]) -> bool:
         while not is_so():
@@ -282,7 +232,7 @@ class Emulator:
         """Gives the host time to read the last bytes, which closing would discard."""
         end = time.perf_counter() + _DRAIN_S
         while time.perf_counter() < end and not must_end():
-            if not any(line.is_open() for line in self.lines):
+            if not any(line.port.is_open() for line in self.lines):
                 return
             self._answer()
             time.sleep(0.02)

@@ -80,7 +80,8 @@ def emulate(
     """Plays a take over a pseudo-terminal, in the protocol of a device.
 
     Prints the path of the pseudo-terminal on the first line (one line for each sensor, if each has
-    its own port), starts playing when a program opens it, and ends after the take.
+    its own port), starts playing when a program opens it, and ends after the take. On Windows it
+    is a TCP port, and its URL is printed.
     """
     take = noisy(read_take(take_path), noise_presets()[noise], seed)
     faults = Faults(

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import threading
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,9 @@ import pytest
 import serial
 from capture_support import DRIVER, some_take, until
 from sparse_mocap import ConfigError, StreamEncoder, StreamParser, Take, driver_names
-from sparse_mocap.capture import Emulator, Faults
+from sparse_mocap.capture import CaptureError, Emulator, Faults
 from sparse_mocap.capture.drivers import parsed, start_commands
+from sparse_mocap.capture.emulated_port import TcpPort
 from sparse_mocap.capture.emulator import instants
 
 FAST = 25.0
@@ -29,7 +31,7 @@ class Host:
         self.samples: list[np.ndarray] = []
 
     def run(self) -> None:
-        ports = [serial.Serial(path, timeout=0.02) for path in self.emulator.plug_in()]
+        ports = [serial.serial_for_url(path, timeout=0.02) for path in self.emulator.plug_in()]
         thread = threading.Thread(target=self.emulator.run)
         thread.start()
         parts: list[list[np.ndarray]] = [[] for _ in ports]
@@ -42,7 +44,8 @@ class Host:
                 is_last = self.emulator.is_done
                 for index, port in enumerate(ports):
                     data = port.read(max(1, port.in_waiting))
-                    data += port.read(port.in_waiting)
+                    # of a socket, in_waiting tells only whether there is something
+                    data += port.read(4096 if self.emulator.over_tcp else port.in_waiting)
                     self.heard[index] += data
                     parts[index].append(parsed(self.parsers[index], data))
                     for reply in self.parsers[index].pop_replies():
@@ -75,6 +78,15 @@ def test_every_driver_speaks_the_take(driver: str) -> None:
     take = some_take(1.0)
     host = played(take, driver, 10.0)
     assert host.emulator.num_overrun == 0
+    has_heard(host, take)
+
+
+def test_over_tcp_a_host_hears_the_take_too() -> None:
+    take = some_take(1.0)
+    has_heard(played(take, speed=2.0, over_tcp=True), take)
+
+
+def has_heard(host: Host, take: Take) -> None:
     forces = [
         samples[samples["sensor"] == local]["specific_force"]
         for line, samples in zip(host.emulator.lines, host.samples, strict=True)
@@ -86,6 +98,31 @@ def test_every_driver_speaks_the_take(driver: str) -> None:
         assert len(sent) - 2 <= len(force) <= len(sent)
         begin = min(range(3), key=lambda at: abs(sent[at] - force[0]).sum())
         assert force == pytest.approx(sent[begin : begin + len(force)], abs=0.05)
+
+
+def test_a_tcp_port_is_opened_left_and_plugged_in_again() -> None:
+    port = TcpPort()
+    url = port.plug_in()
+    assert not port.is_open()
+    assert port.send(b"nobody hears this")
+    for data in (b"first", b"again"):
+        with serial.serial_for_url(url, timeout=2.0) as host:
+            until(port.is_open)
+            assert port.send(data)
+            assert host.read(5) == data
+            host.write(b"answer")
+            until(lambda: port.received() == b"answer")
+        until(lambda: not port.is_open())
+    host = serial.serial_for_url(url, timeout=0.02)
+    until(port.is_open)
+    port.unplug()
+    until(lambda: is_gone(host))
+    host.close()
+    assert not port.is_plugged_in
+    assert port.plug_in() == url
+    port.unplug()
+    with pytest.raises(CaptureError, match="no pseudo-terminals to link to"):
+        TcpPort(Path("link"))
 
 
 def test_lost_packets_are_counted_by_the_devices_counter() -> None:
@@ -151,7 +188,7 @@ def test_a_cut_takes_the_port_away() -> None:
         thread.start()
         until(lambda: is_gone(port))
         thread.join()
-    assert emulator.lines[0].master == -1
+    assert not emulator.lines[0].port.is_plugged_in
 
 
 def test_it_waits_for_a_host_and_is_paced() -> None:
