@@ -29,6 +29,20 @@ BASELINES = {
     "mean pose": "the clip's own mean pose, held still",
 }
 
+MOVEMENTS = (
+    "wrists, °",
+    "fast turns, %",
+    "step, cm",
+    "feet, cm/s",
+    "sunk, %",
+    "jerk ratio",
+    "jumps",
+    "root, cm",
+    "heading, °",
+    "warnings",
+)
+DRIFTS = (("root", "cm"), ("heading", "deg"))
+
 Evaluation = dict[str, Any]
 """What `sparse-mocap evaluate --json` writes."""
 
@@ -44,6 +58,12 @@ README come from here.
 - Live quality: each frame from what was measured until then and shortly after (latency). Best
   quality: each frame from the whole take.
 - Oracle: the nearest pose in the database, chosen by looking at the truth.
+- Movement: turn of a wrist from frame to frame, frames into which a joint turns over 60°, the
+  largest step of a joint within a frame, speed of the feet while they stand in truth, ankles more
+  than 2 cm lower than they ever are in truth, jerk as a part of the truth's, clips in which a joint
+  steps three times as far as in truth, drift of root and heading after 2 s, and precision and
+  recall of the warning that a reconstruction is no better than the clip's own mean pose. All are
+  means over the clips but the largest step and the number of jumps.
 """
 
 
@@ -98,11 +118,42 @@ def details(found: Evaluation) -> list[str]:
         angle_deg = "" if angle is None else f"{angle:.1f}"
         jerk = f"{figures['jerk_kmps3']:.3f}"
         lines.append(row([label(method), *errors, angle_deg, jerk, late_ms]))
+    lines += ["", *movements(found)]
     lines += ["", *head(["mean, cm", *map(label, found["methods"])])]
     for name in next(iter(found["methods"].values()))["class_errors_cm"]:
         errors = (f"{m['class_errors_cm'][name]:.1f}" for m in found["methods"].values())
         lines.append(row([name, *errors]))
     return lines
+
+
+def movements(found: Evaluation) -> list[str]:
+    """How methods move, beside the truth."""
+    lines = head(["", *MOVEMENTS])
+    lines.append(row(["truth", *_movement_cells(found["truth_movement"], None)]))
+    for method, figures in found["methods"].items():
+        if figures["movement"]:
+            lines.append(row([label(method), *_movement_cells(figures["movement"], figures)]))
+    return lines
+
+
+def _movement_cells(moved: dict[str, Any], figures: dict[str, Any] | None) -> list[str]:
+    wrists = 0.5 * (moved["turn_deg"]["lwrist"] + moved["turn_deg"]["rwrist"])
+    cells = [
+        f"{wrists:.1f}",
+        f"{100.0 * moved['fast_turns']:.1f}",
+        f"{moved['largest_step_cm']:.0f}",
+    ]
+    cells += [_told(moved["standing_cmps"], ".1f"), f"{100.0 * moved['under_floor']:.1f}"]
+    if figures is None:
+        return [*cells, "1.0", "0", "", "", ""]
+    cells += [f"{figures['jerk_ratio']:.1f}", str(figures["jumps"]["over_3_true_steps"])]
+    cells += [_told(moved[f"{name}_after_2_s_{unit}"], ".0f") for name, unit in DRIFTS]
+    warned = figures["warnings"].values()
+    return [*cells, " / ".join(_told(share, ".2f") for share in warned)]
+
+
+def _told(value: float | None, spec: str) -> str:
+    return "-" if value is None else format(value, spec)
 
 
 def setting(found: Evaluation) -> str:

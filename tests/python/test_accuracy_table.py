@@ -16,6 +16,15 @@ HEAD = "| | known performer | unknown performer |"
 CLASSES = ("squat", "walk")
 LATENCIES = {"path_regression": 75.4, "path_regression, best": None, "oracle": None}
 
+MOVEMENT = {
+    "turn_deg": {"lwrist": 2.0, "rwrist": 3.0, "head": 1.0},
+    "fast_turns": 0.012,
+    "largest_step_cm": 30.4,
+    "standing_cmps": 11.06,
+    "under_floor": 0.0,
+}
+DRIFTS = {"root_after_2_s_cm": 25.6, "heading_after_2_s_deg": None}
+
 
 def found(scenario: int, gyroscopes: bool, mean_cm: float) -> dict[str, Any]:
     """As evaluate --json writes it; each method is a centimetre worse than the one before."""
@@ -28,6 +37,10 @@ def found(scenario: int, gyroscopes: bool, mean_cm: float) -> dict[str, Any]:
             "jerk_kmps3": 0.1234,
             "latency_ms": late,
             "class_errors_cm": dict.fromkeys(CLASSES, mean_cm + index),
+            "movement": {} if method == "oracle" else MOVEMENT | DRIFTS,
+            "jerk_ratio": 1.24,
+            "jumps": {"over_50_cm": 0, "over_3_true_steps": 2},
+            "warnings": {"precision": 0.5, "recall": None},
         }
         for index, (method, late) in enumerate(LATENCIES.items())
     }
@@ -36,7 +49,8 @@ def found(scenario: int, gyroscopes: bool, mean_cm: float) -> dict[str, Any]:
         "sites": ["left_wrist", "right_wrist"], "noise": "none", "frames": 12345, "rate_hz": 25.0,
     }  # fmt: skip
     tests = [{"actor": "ada", "motion_class": name} for name in CLASSES]
-    return {"scenario": scenario, "settings": settings, "methods": methods, "tests": tests}
+    told = {"scenario": scenario, "settings": settings, "methods": methods, "tests": tests}
+    return told | {"truth_movement": MOVEMENT}
 
 
 ALL = [found(1, False, 5.04), found(3, False, 8.0), found(1, True, 4.0), found(3, True, 7.0)]
@@ -53,6 +67,9 @@ def test_the_document_has_every_figure_and_no_path() -> None:
     assert "| oracle, with gyroscopes" not in text
     assert "| `path_regression`, live quality | 5.04 | 2.00 | 3.46 | 12.3 | 0.123 | 75 |" in lines
     assert "| oracle | 9.00 | 2.00 | 3.46 | | 0.123 | |" in lines
+    assert "| truth | 2.5 | 1.2 | 30 | 11.1 | 0.0 | 1.0 | 0 | | | |" in lines
+    moved = "2.5 | 1.2 | 30 | 11.1 | 0.0 | 1.2 | 2 | 26 | - | 0.50 / -"
+    assert f"| `path_regression`, best quality | {moved} |" in lines
     assert text.count("| walk | ") == 4
     assert "`mocap`; 2 clips performed" in text
     assert "12,345" in text

@@ -15,7 +15,11 @@ from click.testing import Result
 from sparse_mocap import FormatError, MotionDatabase
 from sparse_mocap.evaluation import (
     BASELINES,
+    ClipResult,
+    Evaluation,
+    Movement,
     Settings,
+    TestClip,
     choose_tests,
     contenders,
     evaluate,
@@ -180,6 +184,39 @@ def test_the_oracle_bounds_what_the_database_can_give(found: dict) -> None:
     assert methods["oracle"]["mean_cm"] < methods["window of 10"]["mean_cm"]
     assert methods["mean pose"]["jerk_kmps3"] == 0
     assert 0 < methods["path_regression"]["mean_cm"] < methods["mean pose"]["mean_cm"]
+
+
+def test_movement_is_a_mean_over_clips_beside_the_truth(found: dict) -> None:
+    truth = found["truth_movement"]
+    assert 0 < truth["turn_deg"]["lwrist"] < 10
+    assert truth["under_floor"] == 0
+    for name, method in found["methods"].items():
+        assert (method["movement"] == {}) == (name in BASELINES)
+        if name in BASELINES:
+            continue
+        moved = [test["movement"][name] for test in found["tests"]]
+        for figure in ("standing_cmps", "under_floor", "fast_turns"):
+            known = [told[figure] for told in moved if told[figure] is not None]
+            assert method["movement"][figure] == pytest.approx(np.mean(known))
+        steps = [told["largest_step_cm"] for told in moved]
+        assert method["movement"]["largest_step_cm"] == max(steps)
+        assert method["jumps"]["over_50_cm"] == sum(step > 50 for step in steps)
+        ratios = [t["jerk_kmps3"][name] / t["jerk_kmps3"]["truth"] for t in found["tests"]]
+        assert method["jerk_ratio"] == pytest.approx(np.mean(ratios))
+
+
+def test_warnings_are_right_where_a_held_pose_is_better() -> None:
+    def clip(mean_cm: float, match: str) -> TestClip:
+        held = ClipResult(np.array([10.0]), np.zeros(1), 0.0)
+        tried = ClipResult(np.array([mean_cm]), np.zeros(1), 0.1, match=match)
+        movement = Movement(np.zeros(1), 0.0, 1.0, 1.0, 0.0, {}, {})
+        return TestClip("a", "a", "a", 1, 0, 0.1, movement, {"m": tried, "mean pose": held})
+
+    told = [(12.0, "poor"), (13.0, "good"), (14.0, "poor"), (5.0, "poor"), (6.0, "fair")]
+    tests = [clip(*one) for one in told]
+    found = Evaluation(1, {}, ["root"], {"m": None, "mean pose": None}, tests)
+    assert found.warnings("m") == pytest.approx({"precision": 2 / 3, "recall": 2 / 3})
+    assert found.warnings("mean pose") == {"precision": None, "recall": None}
 
 
 def test_an_evaluation_is_told_drawn_and_kept(found: dict) -> None:

@@ -9,6 +9,7 @@ from .metrics import (
     joint_errors,
     mean_jerk,
 )
+from .movement import Movement
 from .performance import Performance, performed
 from .protocol import SCENARIOS, choose_tests, excluded_clips, motion_files, source_path
 from .result import ClipResult, Evaluation, TestClip
@@ -20,6 +21,7 @@ __all__ = [
     "ClipResult",
     "Contender",
     "Evaluation",
+    "Movement",
     "Performance",
     "Settings",
     "TestClip",

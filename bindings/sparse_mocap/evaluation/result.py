@@ -3,19 +3,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .metrics import CM
+from .movement import DRIFT_AFTER_S, Movement
 
 __all__ = ["ClipResult", "Evaluation", "TestClip", "clip_result"]
 
 Floats = NDArray[np.float64]
 
 HISTOGRAM_BIN_CM = 0.5
+JUMP_CM = 50.0
 FORMAT_VERSION = 1
 """Of the evaluation's JSON."""
 
@@ -31,6 +33,10 @@ class ClipResult:
     jerk_kmps3: float
     joint_angle_errors_deg: Floats | None = None
     """(J,) mean over the frames; None where only positions are known."""
+    movement: Movement | None = None
+    """None where only positions are known."""
+    match: str | None = None
+    """What the reconstruction says of itself; None of baselines."""
 
     @property
     def mean_angle_deg(self) -> float | None:
@@ -56,6 +62,8 @@ class TestClip:
     num_frames: int
     num_excluded: int
     jerk_kmps3: float
+    movement: Movement
+    """Of the truth."""
     results: dict[str, ClipResult] = field(default_factory=dict)
 
 
@@ -107,6 +115,70 @@ class Evaluation:
         known = [mean for mean in means if mean is not None]
         return float(np.mean(known)) if known else None
 
+    def movement(self, method: str | None) -> dict[str, Any]:
+        """Returns the means over the tests of how a method, or with None the truth, moves."""
+        movements = [self._movement(test, method) for test in self.tests]
+        known = [movement for movement in movements if movement is not None]
+        if not known:
+            return {}
+        turns = np.mean([movement.turn_deg for movement in known], axis=0)
+        figures: dict[str, Any] = {
+            "turn_deg": dict(zip(self.joint_names, turns.tolist(), strict=True)),
+            "fast_turns": _mean([m.fast_turns for m in known]),
+            "largest_step_cm": max(m.largest_step_cm for m in known),
+            "standing_cmps": _mean([m.standing_cmps for m in known]),
+            "under_floor": _mean([m.under_floor for m in known]),
+        }
+        if method is not None:
+            for after_s in DRIFT_AFTER_S:
+                figures[f"root_after_{after_s}_s_cm"] = _mean(
+                    [m.root_drift_cm[after_s] for m in known]
+                )
+                figures[f"heading_after_{after_s}_s_deg"] = _mean(
+                    [m.heading_drift_deg[after_s] for m in known]
+                )
+        return figures
+
+    @staticmethod
+    def _movement(test: TestClip, method: str | None) -> Movement | None:
+        return test.movement if method is None else test.results[method].movement
+
+    def jumps(self, method: str) -> dict[str, int]:
+        """Returns in how many tests a joint jumps.
+
+        Over 50 cm in one frame, and over three times the largest step of the truth.
+        """
+        steps = [
+            (test.results[method].movement, test.movement.largest_step_cm) for test in self.tests
+        ]
+        known = [(moved.largest_step_cm, true) for moved, true in steps if moved is not None]
+        return {
+            "over_50_cm": sum(step > JUMP_CM for step, _ in known),
+            "over_3_true_steps": sum(step > 3.0 * true for step, true in known),
+        }
+
+    def jerk_ratios(self, method: str) -> Floats:
+        """Returns each test's jerk as a part of the truth's."""
+        return np.array([t.results[method].jerk_kmps3 / t.jerk_kmps3 for t in self.tests])
+
+    def warnings(self, method: str) -> dict[str, float | None]:
+        """Returns how right the warning of a poor match is.
+
+        It should come for the tests that are worse than the clip's own mean pose held still.
+        precision: how many of the warnings are right; recall: how many such tests are warned of.
+        None where there are none.
+        """
+        told = [test.results[method].match for test in self.tests]
+        if None in told or any("mean pose" not in test.results for test in self.tests):
+            return {"precision": None, "recall": None}
+        is_worse = self.clip_means_cm(method) > self.clip_means_cm("mean pose")
+        is_warned = np.array([match == "poor" for match in told])
+        right = int((is_worse & is_warned).sum())
+        return {
+            "precision": right / int(is_warned.sum()) if is_warned.any() else None,
+            "recall": right / int(is_worse.sum()) if is_worse.any() else None,
+        }
+
     def summary(self, method: str) -> dict[str, Any]:
         """Returns the figures of one method as JSON has them."""
         means, frames = self.clip_means_cm(method), self.frame_errors_cm(method)
@@ -118,7 +190,12 @@ class Evaluation:
             "p90_cm": float(np.percentile(means, 90)),
             "joint_angle_deg": self.angle_error_deg(method),
             "jerk_kmps3": self.jerk_kmps3(method),
+            "jerk_ratio": float(np.mean(self.jerk_ratios(method))),
+            "largest_jerk_ratio": float(np.max(self.jerk_ratios(method))),
             "latency_ms": self.latencies_ms[method],
+            "movement": self.movement(method),
+            "jumps": self.jumps(method),
+            "warnings": self.warnings(method),
             "class_errors_cm": self.class_errors_cm(method),
             "joint_errors_cm": self.joint_errors_cm(method),
             "histogram": {"bin_cm": HISTOGRAM_BIN_CM, "frames": counts.tolist()},
@@ -131,6 +208,7 @@ class Evaluation:
             "format_version": FORMAT_VERSION,
             "scenario": self.scenario,
             "settings": self.settings,
+            "truth_movement": self.movement(None),
             "truth_jerk_kmps3": float(np.mean([test.jerk_kmps3 for test in self.tests])),
             "methods": {method: self.summary(method) for method in self.methods},
             "tests": [
@@ -141,6 +219,13 @@ class Evaluation:
                     "frames": test.num_frames,
                     "excluded_clips": test.num_excluded,
                     "error_cm": {method: r.mean_cm for method, r in test.results.items()},
+                    "match": {method: r.match for method, r in test.results.items()},
+                    "movement": {
+                        method: _figures(self._movement(test, name))
+                        for method, name in [("truth", None), *((m, m) for m in test.results)]
+                    },
+                    "jerk_kmps3": {"truth": test.jerk_kmps3}
+                    | {method: r.jerk_kmps3 for method, r in test.results.items()},
                 }
                 for test in self.tests
             ],
@@ -153,7 +238,34 @@ def clip_result(
     frame_errors_m: Floats,
     jerk_kmps3: float,
     angle_errors_deg: Floats | None = None,
+    movement: Movement | None = None,
+    match: str | None = None,
 ) -> ClipResult:
     """Returns the result with errors in cm: of the joints (T, J) and of the frames (T,)."""
     angles = None if angle_errors_deg is None else angle_errors_deg.mean(axis=0)
-    return ClipResult(CM * frame_errors_m, CM * errors_m.mean(axis=0), jerk_kmps3, angles)
+    return ClipResult(
+        CM * frame_errors_m, CM * errors_m.mean(axis=0), jerk_kmps3, angles, movement, match
+    )
+
+
+def _figures(movement: Movement | None) -> dict[str, Any] | None:
+    """Returns the figures of one test as JSON has them; None for NaN."""
+    if movement is None:
+        return None
+    figures = asdict(movement)
+    del figures["turn_deg"]
+    drifts = {f"{name}_drift_{unit}" for name, unit in (("root", "cm"), ("heading", "deg"))}
+    return {
+        name: {str(s): _known(v) for s, v in value.items()} if name in drifts else _known(value)
+        for name, value in figures.items()
+    }
+
+
+def _known(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+def _mean(values: list[float]) -> float | None:
+    """Returns the mean of those that are known; None when none is."""
+    known = [value for value in values if np.isfinite(value)]
+    return float(np.mean(known)) if known else None

@@ -15,7 +15,6 @@ from .. import (
     Clip,
     FormatError,
     MappingError,
-    Motion,
     MotionDatabase,
     Reconstruction,
     nearest_poses,
@@ -24,22 +23,16 @@ from .. import (
 )
 from ..readings import all_readings, channels_in
 from ..reconstruction import reconstruct
+from ..report import match
 from ..table_errors import TableError
+from .comparison import Estimate, Truth, world_of
 from .contender import Contender, contenders
-from .metrics import (
-    frame_errors,
-    interpolated,
-    joint_angle_errors_deg,
-    joint_errors,
-    mean_jerk,
-    nearest,
-)
 from .models import Trainer
 from .performance import PAPER_SITES, Performance, heading_rotations, performed
 from .protocol import choose_tests, excluded_clips, motion_files, source_path
-from .result import ClipResult, Evaluation, TestClip, clip_result
+from .result import Evaluation, TestClip
 
-__all__ = ["Estimate", "Settings", "evaluate"]
+__all__ = ["Settings", "evaluate"]
 
 Floats = NDArray[np.float64]
 Progress = Callable[[int, int, str], bool | None]
@@ -69,18 +62,6 @@ class Settings:
     seed: int = 0
     with_gyroscopes: bool = False
     """Whether the sensors are inertial ones, not accelerometers alone."""
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """Where a method or baseline puts the joints."""
-
-    label: str
-    times_s: Floats
-    positions: Floats
-    """(T, J, 3) m, heading frame."""
-    rotations: Floats | None = None
-    """(T, J, 4), root without heading; None for baselines that only know positions."""
 
 
 def evaluate(
@@ -169,19 +150,19 @@ class _Run:
             noise=self.settings.noise,
             seed=self.settings.seed,
         )
-        truth = np.asarray(self.truths[clip.begin : clip.end], float)
+        truth = Truth(self.database, clip, performance.motion_on(self.database))
         test = TestClip(
             clip.name,
             clip.actor,
             clip.motion_class,
-            len(truth),
+            len(truth.positions),
             len(excluded),
-            mean_jerk(truth, self.database.rate_hz),
+            truth.jerk_kmps3,
+            truth.movement(),
         )
-        true_motion = performance.motion_on(self.database)
         estimates = [self._estimate(one, performance, excluded) for one in self.contenders]
-        for estimate in estimates + self._baselines(performance, truth, excluded):
-            test.results[estimate.label] = self._compared(truth, true_motion, estimate)
+        for estimate in estimates + self._baselines(performance, truth.positions, excluded):
+            test.results[estimate.label] = truth.compared(estimate)
         self.evaluation.tests.append(test)
 
     def _estimate(
@@ -196,6 +177,8 @@ class _Run:
             np.asarray(solved.readings.times_s),
             np.asarray(motion.joint_positions("heading")),
             heading_rotations(motion),
+            world_of(motion),
+            match(solved) if "sensor_misfit_mps2" in solved.diagnostics else None,
         )
 
     def _solved(
@@ -236,24 +219,3 @@ class _Run:
         found.append(Estimate("mean pose", truth_times, mean_pose))
         self.evaluation.latencies_ms |= dict.fromkeys(BASELINES)
         return found
-
-    def _compared(self, truth: Floats, true_motion: Motion, estimate: Estimate) -> ClipResult:
-        """Compares where both are known; the estimate is taken at the truth's times."""
-        times = estimate.times_s
-        truth_times = np.arange(len(truth)) / self.database.rate_hz
-        is_known = (truth_times >= times[0] - 1e-6) & (truth_times <= times[-1] + 1e-6)
-        if not is_known.any():
-            raise TableError(self.database.path, 0, "the performance is too short to compare")
-        wanted = truth_times[is_known]
-        errors = joint_errors(truth[is_known], interpolated(times, estimate.positions, wanted))
-        angles = None
-        if estimate.rotations is not None:
-            count = min(int(is_known.sum()), true_motion.num_frames)
-            true_rotations = heading_rotations(true_motion)[: len(truth)]
-            known = is_known[: len(true_rotations)]
-            angles = joint_angle_errors_deg(
-                true_rotations[known][:count],
-                nearest(times, estimate.rotations, truth_times[: len(known)][known][:count]),
-            )
-        jerk = mean_jerk(estimate.positions, self.database.rate_hz)
-        return clip_result(errors, frame_errors(errors), jerk, angles)

@@ -4,6 +4,7 @@
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/database/model.hpp"
 #include "sparse_mocap/readings/channel_names.hpp"
+#include "sparse_mocap/reconstruction/human_limits.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 
 namespace sparse_mocap {
@@ -82,7 +83,7 @@ std::unique_ptr<LiveMethod> make_live_method(const MethodEntry& method,
     throw ConfigError("method " + method.info.name +
                       " does not work live: record a take and reconstruct it in best quality");
   check(method.info, context);
-  return method.make_live(settings, context);
+  return within_human_limits(method.make_live(settings, context));
 }
 
 std::unique_ptr<WholeTakeMethod> make_whole_take_method(const MethodEntry& method,
@@ -92,7 +93,7 @@ std::unique_ptr<WholeTakeMethod> make_whole_take_method(const MethodEntry& metho
     throw ConfigError("method " + method.info.name +
                       " has no best quality: it works live only, frame by frame");
   check(method.info, context);
-  return method.make_whole_take(settings, context);
+  return within_human_limits(method.make_whole_take(settings, context));
 }
 
 Model train_model(const MethodEntry& method, const MethodSettings& settings,

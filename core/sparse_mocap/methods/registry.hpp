@@ -16,9 +16,10 @@ const std::vector<MethodEntry>& methods();
 // Throws ConfigError naming the known methods.
 const MethodEntry& find_method(std::string_view name);
 
-// A reconstruction of one performance. Throws ConfigError, in one line that says what is missing:
-// a method that does not work this way, a database, model or body that it needs, sensors that are
-// too few, too many or without a channel that it needs, settings that cannot be.
+// A reconstruction of one performance, within what people can do (HumanLimits). Throws ConfigError,
+// in one line that says what is missing: a method that does not work this way, a database, model or
+// body that it needs, sensors that are too few, too many or without a channel that it needs,
+// settings that cannot be.
 std::unique_ptr<LiveMethod> make_live_method(const MethodEntry& method,
                                              const MethodSettings& settings,
                                              const MethodContext& context);

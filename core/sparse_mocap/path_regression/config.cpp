@@ -34,6 +34,9 @@ Config live_config() {
                                 {{-0.16, 0.04, -0.36, kLiveLookAhead_s}},
                                 {{-0.32, 0.06, -0.6, kLiveLookAhead_s}},
                                 {{-0.56, 0.08, -0.88, kLiveLookAhead_s}}};
+  config.fit.lever_m = 0.2;
+  config.fit.step = 3.0;
+  config.fit.smoothness = 0.5;
   return config;
 }
 
@@ -49,9 +52,9 @@ Config whole_take_config() {
     for (const double side : {-1.0, 1.0})
       config.regression_features.push_back(
           {{side * centre_s, sigma_s, side * centre_s - 0.24, side * centre_s + 0.24}});
-  config.pose_weight = 5.0;
-  config.motion_weight = 0.0;
-  config.smoothing_s = 0.036;
+  config.fit.lever_m = 0.2;
+  config.fit.step = 3.0;
+  config.fit.smoothness = 1.0;
   return config;
 }
 
@@ -82,19 +85,22 @@ const OptionTable<Config>& options() {
                   "how much better paths count more than others")
           .number("regression_ridge", &Config::regression_ridge, 0.0, 1e9,
                   "ridge of the regression from readings to poses; 0: no regression")
-          .number("pose_weight", &Config::pose_weight, 1e-6, 1e6, "weight of the retrieved poses")
-          .number("motion_weight", &Config::motion_weight, 0.0, 1e6,
-                  "weight of the retrieved movement since the frame before")
-          .number("gravity_weight", &Config::gravity_weight, 0.0, 1e6,
+          .number("step_weight", &Config::fit, &FitWeights::step, 0.0, 1e6,
+                  "weight of the retrieved movement into a frame; that of retrieved poses is 1")
+          .number("smoothness", &Config::fit, &FitWeights::smoothness, 0.0, 1e6,
+                  "weight of even movement from frame to frame")
+          .number("twist_lever_m", &Config::fit, &FitWeights::lever_m, 1e-3, 1.0,
+                  "how far out a bone's turn about itself is compared, m")
+          .number("gravity_weight", &Config::fit, &FitWeights::inclination, 0.0, 1e6,
                   "weight of the limbs' measured inclination")
-          .number("pca_variance", &Config::pca_variance, 0.01, 1.0,
-                  "share of the poses' variance that the pose may vary in")
+          .number("contact_weight", &Config::fit, &FitWeights::contact, 0.0, 1e6,
+                  "how firmly a standing foot stays in place")
+          .number("root_weight", &Config::fit, &FitWeights::root_step, 0.0, 1e6,
+                  "weight of the root's retrieved movement")
+          .number("root_smoothness", &Config::fit, &FitWeights::root_smoothness, 0.0, 1e6,
+                  "weight of even movement of the root")
           .integer("max_iterations", &Config::max_iterations, 1, 10'000,
-                   "steps of the minimisation, at most")
-          .number("foot_lock", &Config::foot_lock, 0.0, 1.0,
-                  "how firmly the root stays on a standing foot")
-          .number("smoothing_s", &Config::smoothing_s, 0.0, 1.0,
-                  "final smoothing of whole takes, s");
+                   "steps of the fit, at most");
   return table;
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "sparse_mocap/path_regression/take_fit.hpp"
 #include "sparse_mocap/reconstruction/method_info.hpp"
 #include "sparse_mocap/reconstruction/options.hpp"
 #include "sparse_mocap/retrieval/features.hpp"
@@ -30,18 +31,9 @@ struct Config {
   double regression_ridge = 6.0;
   std::vector<retrieval::FeaturePart> regression_features;
 
-  // The pose: squared distances (m) to what the paths, their steps and gravity say.
-  double pose_weight = 2.5;
-  double motion_weight = 2.5;
-  double gravity_weight = 30.0;
-  double pca_variance = 0.999;
-  int max_iterations = 50;
-
-  // The root: how far a foot that stands for certain overrules the retrieved motion.
-  double foot_lock = 0.8;
-
-  // Whole takes: standard deviation of the final low-pass; 0 turns it off.
-  double smoothing_s = 0.0;
+  // What poses and root are fitted to.
+  FitWeights fit;
+  int max_iterations = 10;
 };
 
 // Each pose must be ready soon: retrieval looks 40 ms ahead.

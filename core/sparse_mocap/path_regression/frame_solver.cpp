@@ -2,12 +2,10 @@
 #include "sparse_mocap/path_regression/frame_solver.hpp"
 
 #include <algorithm>
-#include <utility>
 
-#include "sparse_mocap/path_regression/pose_fit.hpp"
 #include "sparse_mocap/path_regression/regression.hpp"
 #include "sparse_mocap/retrieval/diagnostics.hpp"
-#include "sparse_mocap/retrieval/pose_minimizer.hpp"
+#include "sparse_mocap/retrieval/root_motion.hpp"
 
 namespace sparse_mocap::path_regression {
 
@@ -38,8 +36,7 @@ FrameSolver::FrameSolver(const Config& config, const MethodContext& context)
       signal_rows_(database_signals(*database_, signals_)),
       index_(database_features(*database_, signal_rows_, features_, column_weights_),
              searched_frames(*database_, config.use_tempo_copies, context.excluded_clips)),
-      config_(config),
-      root_(database_->frame_time_s(), config.foot_lock) {
+      config_(config) {
   const int most_neighbours = static_cast<int>(Config::kNeighbourShare * index_.num_rows());
   config_.num_neighbours = std::min(config_.num_neighbours, std::max(most_neighbours, 1));
   config_.num_paths = std::min(config_.num_paths, std::max(config_.num_neighbours / 4, 1));
@@ -63,86 +60,57 @@ void FrameSolver::search(const SignalWindow& window, std::vector<Neighbour>& out
   index_.search(feature, config_.num_neighbours, out);
 }
 
-SolvedFrame FrameSolver::solve(const std::vector<Path>& paths, const SignalWindow& window,
-                               const Reading& reading) {
-  auto best = best_paths(paths, config_.num_paths);
-  auto weights = softmax_weights(best, config_.sharpness);
-  Neighbourhood neighbours =
-      gather(*database_, std::move(best), std::move(weights), past_ ? &past_->angles : nullptr);
-  if (config_.regression_ridge > 0.0) regress(neighbours, window);
-  SolvedFrame frame;
-  frame.time_s = reading.time_s;
-  frame.angles = fitted_angles(neighbours, reading);
-  JointTransforms pose;
-  forward_kinematics(database_->skeleton(), Vec3::Zero(), frame.angles, pose);
-  frame.positions = stacked_ends(pose);
-  const RootRates rates = root_rates(*database_, neighbours);
-  root_.advance(rates, frame.positions);
-  frame.root_position = root_.position();
-  frame.yaw_rad = root_.yaw_rad();
-  frame.contacts = rates.contacts;
-  frame.diagnostics = retrieval_diagnostics(*database_, neighbours, signals_, signal_rows_,
+RetrievedFrame FrameSolver::retrieve(const std::vector<Path>& paths, const SignalWindow& window,
+                                     const Reading& reading) const {
+  WeightedPaths weighted;
+  weighted.paths = best_paths(paths, config_.num_paths);
+  weighted.weights = softmax_weights(weighted.paths, config_.sharpness);
+  RetrievedFrame frame;
+  const Eigen::VectorXd weights =
+      config_.regression_ridge > 0.0 ? regressed(weighted, window) : weighted.weights;
+  frame.target.points = mean_points(weighted.paths, weights, 0);
+  if (config_.fit.step > 0.0) {
+    frame.target.step = frame.target.points - mean_points(weighted.paths, weights, 1);
+  }
+  frame.target.inclination = inclination_target(database_->skeleton(), reading, signals_);
+  frame.target.root = root_rates(*database_, weighted);
+  frame.diagnostics = retrieval_diagnostics(*database_, weighted, signals_, signal_rows_,
                                             window.rows.row(window.at));
-  past_ = Past{frame.angles, frame.positions};
   return frame;
 }
 
-void FrameSolver::reset() {
-  root_.reset();
-  past_.reset();
-}
-
-// Moves the retrieved poses to where the regression from signals to poses says.
-void FrameSolver::regress(Neighbourhood& neighbours, const SignalWindow& window) const {
+// The weights by which the regression from signals to poses predicts.
+Eigen::VectorXd FrameSolver::regressed(const WeightedPaths& weighted,
+                                       const SignalWindow& window) const {
   const Eigen::Index dimensions =
       regression_features_.num_dimensions(static_cast<int>(signals_.size()));
   const auto size = static_cast<std::size_t>(dimensions);
-  Eigen::MatrixXf features(dimensions, static_cast<Eigen::Index>(neighbours.paths.size()));
-  for (std::size_t i = 0; i < neighbours.paths.size(); ++i) {
-    const int frame = neighbours.paths[i].frame;
+  Eigen::MatrixXf features(dimensions, static_cast<Eigen::Index>(weighted.paths.size()));
+  for (std::size_t i = 0; i < weighted.paths.size(); ++i) {
+    const int frame = weighted.paths[i].frame;
     const Clip& clip = clip_at(*database_, frame);
     feature_at({signal_rows_, clip.begin, clip.end, frame}, regression_features_, column_weights_,
                {features.data() + static_cast<Eigen::Index>(i) * dimensions, size});
   }
   Eigen::VectorXf query(dimensions);
   feature_at(window, regression_features_, column_weights_, {query.data(), size});
-  shift_to_regression(neighbours, regression_weights(features, query, neighbours.weights,
-                                                     config_.regression_ridge));
+  return regression_weights(features, query, weighted.weights, config_.regression_ridge);
 }
 
-// Inverse kinematics in the local linear model of the poses, from the frame before, the mean and
-// the best path's pose.
-Eigen::VectorXd FrameSolver::fitted_angles(const Neighbourhood& neighbours,
-                                           const Reading& reading) const {
-  const auto& weights = neighbours.weights;
-  std::vector<PositionTarget> positions{
-      position_target(config_.pose_weight, neighbours.positions, weights)};
-  if (past_ && config_.motion_weight > 0.0) {
-    const Eigen::MatrixXd moved = steps_into(neighbours.paths).colwise() + past_->positions;
-    positions.push_back(position_target(config_.motion_weight, moved, weights));
-  }
-  const PoseFit fit(
-      database_->skeleton(), std::move(positions),
-      inclination_target(config_.gravity_weight, database_->skeleton(), reading, signals_));
-  const PoseSubspace subspace = weighted_pca(neighbours.angles, weights, config_.pca_variance);
-  std::vector<Eigen::VectorXd> starts{subspace.mean, neighbours.angles.col(0)};
-  if (past_) starts.insert(starts.begin(), past_->angles);
-  return minimize(fit, subspace, starts, config_.max_iterations).angles;
-}
-
-// What the joints' positions change by from the frame before into each path's frame, inside its
-// clip: 63 x paths, m.
-Eigen::MatrixXd FrameSolver::steps_into(const std::vector<Path>& paths) const {
-  const auto& positions = database_->positions();
-  Eigen::MatrixXd steps(positions.cols(), static_cast<Eigen::Index>(paths.size()));
+// The weighted mean of the points so many frames before the paths' ends, inside their clips.
+Eigen::VectorXd FrameSolver::mean_points(const std::vector<Path>& paths,
+                                         const Eigen::VectorXd& weights, int frames_back) const {
+  const Skeleton& skeleton = database_->skeleton();
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(12 * skeleton.num_joints());
+  JointTransforms pose;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const Clip& clip = clip_at(*database_, paths[i].frame);
-    const int into = std::max(paths[i].frame, std::min(clip.begin + 1, clip.end - 1));
-    const int from = std::max(into - 1, clip.begin);
-    steps.col(static_cast<Eigen::Index>(i)) =
-        (positions.row(into) - positions.row(from)).transpose().cast<double>();
+    const int frame = std::max(paths[i].frame - frames_back, clip.begin);
+    forward_kinematics(skeleton, Vec3::Zero(),
+                       database_->angles().row(frame).transpose().cast<double>(), pose);
+    mean += weights[static_cast<Eigen::Index>(i)] * pose_points(pose, config_.fit.lever_m);
   }
-  return steps;
+  return mean;
 }
 
 }  // namespace sparse_mocap::path_regression

@@ -2,22 +2,26 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "sparse_mocap/path_regression/config.hpp"
-#include "sparse_mocap/path_regression/solved_frame.hpp"
+#include "sparse_mocap/path_regression/frame_target.hpp"
 #include "sparse_mocap/reconstruction/method_info.hpp"
 #include "sparse_mocap/retrieval/features.hpp"
 #include "sparse_mocap/retrieval/knn_index.hpp"
 #include "sparse_mocap/retrieval/neighbourhood.hpp"
-#include "sparse_mocap/retrieval/root_motion.hpp"
 #include "sparse_mocap/retrieval/signals.hpp"
 
 namespace sparse_mocap::path_regression {
 
-// What live and whole-take reconstruction do alike with a frame: search the database, and make a
-// pose from the paths that lead there.
+// A frame as far as it is known from the database.
+struct RetrievedFrame {
+  FrameTarget target;
+  Diagnostics diagnostics;
+};
+
+// What live and whole-take reconstruction do alike with a frame: search the database, and gather
+// what the paths that lead there say of the pose.
 class FrameSolver {
  public:
   // Throws ConfigError.
@@ -32,17 +36,15 @@ class FrameSolver {
 
   // The database frames whose features are nearest to those of the window's row.
   void search(const retrieval::SignalWindow& window, std::vector<retrieval::Neighbour>& out) const;
-  // The pose that paths, all of which end in neighbours of the window's row, and the frame before
-  // ask for.
-  SolvedFrame solve(const std::vector<retrieval::Path>& paths,
-                    const retrieval::SignalWindow& window, const Reading& reading);
-  void reset();
+  // What paths, all of which end in neighbours of the window's row, and the reading ask for.
+  RetrievedFrame retrieve(const std::vector<retrieval::Path>& paths,
+                          const retrieval::SignalWindow& window, const Reading& reading) const;
 
  private:
-  void regress(retrieval::Neighbourhood& neighbours, const retrieval::SignalWindow& window) const;
-  Eigen::VectorXd fitted_angles(const retrieval::Neighbourhood& neighbours,
-                                const Reading& reading) const;
-  Eigen::MatrixXd steps_into(const std::vector<retrieval::Path>& paths) const;
+  Eigen::VectorXd regressed(const retrieval::WeightedPaths& weighted,
+                            const retrieval::SignalWindow& window) const;
+  Eigen::VectorXd mean_points(const std::vector<retrieval::Path>& paths,
+                              const Eigen::VectorXd& weights, int frames_back) const;
 
   std::shared_ptr<const MotionDatabase> database_;
   std::vector<retrieval::Signal> signals_;
@@ -52,12 +54,6 @@ class FrameSolver {
   retrieval::FeatureRows signal_rows_;  // of the database
   retrieval::KnnIndex index_;
   Config config_;
-  retrieval::RootTracker root_;
-
-  struct Past {
-    Eigen::VectorXd angles, positions;
-  };
-  std::optional<Past> past_;
 };
 
 }  // namespace sparse_mocap::path_regression

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/path_regression/live.hpp"
 
+#include "sparse_mocap/path_regression/banded_system.hpp"
+
 namespace sparse_mocap::path_regression {
 
 LiveReconstructor::LiveReconstructor(const Config& config, const MethodContext& context)
     : solver_(config, context),
+      fit_(solver_.database().skeleton(), solver_.database().frame_time_s(), config.fit),
       graph_(retrieval::clips_of_frames(solver_.database()),
              {solver_.config().penalty, solver_.config().forgetting}),
       recent_(solver_.reach_back() + solver_.look_ahead() + 2,
@@ -30,7 +33,8 @@ std::vector<PoseEstimate> LiveReconstructor::flush() {
 }
 
 void LiveReconstructor::reset() {
-  solver_.reset();
+  frames_.clear();
+  targets_.clear();
   graph_.reset();
   waiting_.clear();
   num_recent_ = 0;
@@ -41,9 +45,21 @@ PoseEstimate LiveReconstructor::solve_next() {
   const retrieval::SignalWindow window{recent_, 0, num_recent_, at};
   solver_.search(window, neighbours_);
   graph_.extend(neighbours_);
-  SolvedFrame frame = solver_.solve(graph_.paths(), window, waiting_.front());
+  RetrievedFrame retrieved = solver_.retrieve(graph_.paths(), window, waiting_.front());
+  const double time_s = waiting_.front().time_s;
   waiting_.pop_front();
-  return to_estimate(std::move(frame), skeleton());
+  if (frames_.size() > BandedSystem::kReach) {
+    frames_.erase(frames_.begin());
+    targets_.erase(targets_.begin());
+  }
+  FittedFrame start = start_of(skeleton(), 1.0 / rate_hz(), retrieved.target,
+                               frames_.empty() ? nullptr : &frames_.back());
+  if (!frames_.empty()) start.rotations = frames_.back().rotations;
+  frames_.push_back(std::move(start));
+  targets_.push_back(std::move(retrieved.target));
+  fit_.fit(frames_, targets_, frames_.size() - 1, solver_.config().max_iterations);
+  return to_estimate(frames_.back(), time_s, targets_.back().root.contacts,
+                     std::move(retrieved.diagnostics));
 }
 
 }  // namespace sparse_mocap::path_regression

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sparse_mocap/path_regression/frame_solver.hpp"
+#include "sparse_mocap/path_regression/take_fit.hpp"
 #include "sparse_mocap/retrieval/olng.hpp"
 
 namespace sparse_mocap::path_regression {
@@ -29,6 +30,10 @@ class LiveReconstructor : public LiveMethod {
   PoseEstimate solve_next();
 
   FrameSolver solver_;
+  TakeFit fit_;
+  // The last frames, as many as a fit looks back, and the targets they had.
+  std::vector<FittedFrame> frames_;
+  std::vector<FrameTarget> targets_;
   retrieval::OnlineLazyNeighbourhoodGraph graph_;
   retrieval::FeatureRows recent_;  // signals of the last readings, oldest first
   Eigen::Index num_recent_ = 0;    // of them known

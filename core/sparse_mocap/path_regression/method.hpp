@@ -14,12 +14,13 @@ namespace sparse_mocap::path_regression {
 //   skipped reading costs less. In whole takes paths are followed in both directions.
 // - Weights: a softmax of the rewards, in place of equation (1).
 // - Retrieved poses are moved along a local ridge regression from readings to poses.
-// - Energy: squared distances of joint positions in place of square-rooted ones of angles and
-//   positions; no smoothness and no control term; the movement since the frame before is the
-//   database's own step in place of a Taylor expansion, and is not used in whole takes; a term for
-//   the inclination of limbs with a gyroscope.
-// - Minimisation: a larger share of the variance, and three starts in place of one.
-// - The root stays on a standing foot. Whole takes are smoothed in the end.
+// - Energy: squared distances of points (joint ends and, so that twist counts, the tips of the
+//   joints' axes) in place of square-rooted ones of angles and positions; no control term; the
+//   movement since the frame before is the database's own step in place of a Taylor expansion; a
+//   term for the inclination of limbs with a gyroscope; standing feet stay in place, and the root's
+//   path and heading are part of the fit.
+// - Minimisation: over joint rotations, not angles in a local subspace. Live one frame after the
+//   other is fitted, those before it given; of whole takes all frames at once.
 // - Numbers of neighbours and paths are limited by shares of the database.
 MethodEntry method();
 

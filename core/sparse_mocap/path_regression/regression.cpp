@@ -29,13 +29,4 @@ Eigen::VectorXd regression_weights(const Eigen::MatrixXf& features, const Eigen:
   return weights.array() * (1.0 + lean.cast<double>().array());
 }
 
-void shift_to_regression(retrieval::Neighbourhood& neighbours,
-                         const Eigen::VectorXd& regression_weights) {
-  const Eigen::VectorXd difference = regression_weights - neighbours.weights;
-  const Eigen::VectorXd angle_shift = neighbours.angles * difference;
-  const Eigen::VectorXd position_shift = neighbours.positions * difference;
-  neighbours.angles.colwise() += angle_shift;
-  neighbours.positions.colwise() += position_shift;
-}
-
 }  // namespace sparse_mocap::path_regression

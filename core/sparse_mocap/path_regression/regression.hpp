@@ -3,8 +3,6 @@
 
 #include <Eigen/Core>
 
-#include "sparse_mocap/retrieval/neighbourhood.hpp"
-
 namespace sparse_mocap::path_regression {
 
 // Local linear (ridge) regression as a re-weighting: for any quantity y_i of the neighbours, the
@@ -14,10 +12,5 @@ namespace sparse_mocap::path_regression {
 // features: dimensions x I. Dimensions where the query is NaN take no part.
 Eigen::VectorXd regression_weights(const Eigen::MatrixXf& features, const Eigen::VectorXf& query,
                                    const Eigen::VectorXd& weights, double ridge);
-
-// Moves all neighbours' poses alike, so that their weighted mean becomes the one that the
-// regression predicts; how they differ from each other stays.
-void shift_to_regression(retrieval::Neighbourhood& neighbours,
-                         const Eigen::VectorXd& regression_weights);
 
 }  // namespace sparse_mocap::path_regression

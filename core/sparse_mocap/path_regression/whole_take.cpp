@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "sparse_mocap/path_regression/take_fit.hpp"
 #include "sparse_mocap/path_regression/two_way_paths.hpp"
 
 namespace sparse_mocap::path_regression {
@@ -18,6 +19,25 @@ retrieval::FeatureRows signal_rows(const std::vector<Reading>& take,
 }
 
 }  // namespace
+
+// The whole take in one fit.
+std::vector<PoseEstimate> WholeTakeReconstructor::fitted(
+    const std::vector<Reading>& take, std::vector<RetrievedFrame> retrieved) const {
+  std::vector<FittedFrame> frames;
+  std::vector<FrameTarget> targets;
+  for (auto& frame : retrieved) {
+    targets.push_back(std::move(frame.target));
+    frames.push_back(start_of(skeleton(), 1.0 / rate_hz(), targets.back(),
+                              frames.empty() ? nullptr : &frames.back()));
+  }
+  const Config& config = solver_.config();
+  TakeFit(skeleton(), 1.0 / rate_hz(), config.fit).fit(frames, targets, 0, config.max_iterations);
+  std::vector<PoseEstimate> estimates;
+  for (std::size_t t = 0; t < frames.size(); ++t)
+    estimates.push_back(to_estimate(frames[t], take[t].time_s, targets[t].root.contacts,
+                                    std::move(retrieved[t].diagnostics)));
+  return estimates;
+}
 
 std::vector<PoseEstimate> WholeTakeReconstructor::solve(const std::vector<Reading>& take,
                                                         const Progress& progress) {
@@ -35,16 +55,12 @@ std::vector<PoseEstimate> WholeTakeReconstructor::solve(const std::vector<Readin
   TwoWayPaths paths(retrieval::clips_of_frames(solver_.database()),
                     {config.penalty, config.forgetting});
   paths.run(columns);
-  solver_.reset();
-  std::vector<SolvedFrame> frames;
+  std::vector<RetrievedFrame> retrieved;
   for (std::size_t t = 0; t < take.size(); ++t) {
     progress.report(take.size() + t, 2 * take.size(), "reconstructing");
-    frames.push_back(solver_.solve(paths.paths(t), window(t), take[t]));
+    retrieved.push_back(solver_.retrieve(paths.paths(t), window(t), take[t]));
   }
-  frames = smoothed(std::move(frames), skeleton(), 1.0 / rate_hz(), config.smoothing_s);
-  std::vector<PoseEstimate> estimates;
-  for (auto& frame : frames) estimates.push_back(to_estimate(std::move(frame), skeleton()));
-  return estimates;
+  return fitted(take, std::move(retrieved));
 }
 
 }  // namespace sparse_mocap::path_regression

@@ -21,6 +21,9 @@ class WholeTakeReconstructor : public WholeTakeMethod {
                                   const Progress& progress) override;
 
  private:
+  std::vector<PoseEstimate> fitted(const std::vector<Reading>& take,
+                                   std::vector<RetrievedFrame> retrieved) const;
+
   FrameSolver solver_;
 };
 

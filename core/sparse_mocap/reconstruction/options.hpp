@@ -43,6 +43,15 @@ class OptionTable {
                       const char* help) {
     return add({name, OptionInfo::Kind::number, help, lowest, highest, {}, {}}, member);
   }
+  // Of a part of the configuration.
+  template <typename Part>
+  OptionTable& number(const char* name, Part Config::*part, double Part::*member, double lowest,
+                      double highest, const char* help) {
+    entries_.push_back({{name, OptionInfo::Kind::number, help, lowest, highest, {}, {}},
+                        [=](const Config& c) { return c.*part.*member; },
+                        [=](Config& c, double value) { c.*part.*member = value; }});
+    return *this;
+  }
   OptionTable& integer(const char* name, int Config::*member, int lowest, int highest,
                        const char* help) {
     return add({name,

@@ -6,25 +6,32 @@
 namespace sparse_mocap::retrieval {
 namespace {
 
-Eigen::VectorXd spread_m(const Neighbourhood& neighbours) {
-  const Eigen::VectorXd mean = neighbours.positions * neighbours.weights;
+Eigen::VectorXd spread_m(const MotionDatabase& database, const WeightedPaths& weighted) {
+  const auto count = static_cast<Eigen::Index>(weighted.paths.size());
+  Eigen::MatrixXd positions(database.positions().cols(), count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    positions.col(i) = database.positions()
+                           .row(weighted.paths[static_cast<std::size_t>(i)].frame)
+                           .transpose()
+                           .cast<double>();
+  const Eigen::VectorXd mean = positions * weighted.weights;
   Eigen::VectorXd spread(mean.size() / 3);
   for (Eigen::Index j = 0; j < spread.size(); ++j) {
-    const auto joint = neighbours.positions.middleRows(3 * j, 3);
+    const auto joint = positions.middleRows(3 * j, 3);
     const Eigen::RowVectorXd squared =
         (joint.colwise() - mean.segment<3>(3 * j)).colwise().squaredNorm();
-    spread[j] = std::sqrt(squared.dot(neighbours.weights));
+    spread[j] = std::sqrt(squared.dot(weighted.weights));
   }
   return spread;
 }
 
-Eigen::VectorXd sensor_misfit_mps2(const Neighbourhood& neighbours, std::span<const Signal> signals,
+Eigen::VectorXd sensor_misfit_mps2(const WeightedPaths& weighted, std::span<const Signal> signals,
                                    const FeatureRows& signal_rows,
                                    const Eigen::RowVectorXf& measured) {
   Eigen::RowVectorXd retrieved = Eigen::RowVectorXd::Zero(signal_rows.cols());
-  for (std::size_t i = 0; i < neighbours.paths.size(); ++i)
-    retrieved += neighbours.weights[static_cast<Eigen::Index>(i)] *
-                 signal_rows.row(neighbours.paths[i].frame).cast<double>();
+  for (std::size_t i = 0; i < weighted.paths.size(); ++i)
+    retrieved += weighted.weights[static_cast<Eigen::Index>(i)] *
+                 signal_rows.row(weighted.paths[i].frame).cast<double>();
   const Eigen::RowVectorXd misfit = measured.cast<double>() - retrieved;
   std::vector<double> norms;
   for (std::size_t s = 0; s < signals.size(); ++s)
@@ -35,13 +42,13 @@ Eigen::VectorXd sensor_misfit_mps2(const Neighbourhood& neighbours, std::span<co
 
 }  // namespace
 
-Diagnostics retrieval_diagnostics(const MotionDatabase& database, const Neighbourhood& neighbours,
+Diagnostics retrieval_diagnostics(const MotionDatabase& database, const WeightedPaths& weighted,
                                   std::span<const Signal> signals, const FeatureRows& signal_rows,
                                   const Eigen::RowVectorXf& measured) {
-  const int frame = neighbours.paths.front().frame;
+  const int frame = weighted.paths.front().frame;
   Diagnostics out;
-  out["sensor_misfit_mps2"] = sensor_misfit_mps2(neighbours, signals, signal_rows, measured);
-  out["spread_m"] = spread_m(neighbours);
+  out["sensor_misfit_mps2"] = sensor_misfit_mps2(weighted, signals, signal_rows, measured);
+  out["spread_m"] = spread_m(database, weighted);
   out["clip"] = Eigen::VectorXd::Constant(1, database.clip_index(frame));
   out["database_frame"] = Eigen::VectorXd::Constant(1, frame);
   return out;

@@ -10,11 +10,14 @@
 
 namespace sparse_mocap::retrieval {
 
-// The poses that the best paths lead to (Tautges et al. 2011, section 5): one column or entry a
-// path, the best path first.
-struct Neighbourhood {
+// The best paths, the best one first, and how much each counts.
+struct WeightedPaths {
   std::vector<Path> paths;
-  Eigen::VectorXd weights;    // W, sum 1
+  Eigen::VectorXd weights;  // W, sum 1
+};
+
+// The poses that the best paths lead to (Tautges et al. 2011, section 5): one column a path.
+struct Neighbourhood : WeightedPaths {
   Eigen::MatrixXd angles;     // Q, 43 x I, rad, each as near to the best path's as it can be put
   Eigen::MatrixXd positions;  // X, 63 x I, m, heading frame
 };

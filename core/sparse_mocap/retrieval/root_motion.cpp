@@ -8,12 +8,12 @@
 
 namespace sparse_mocap::retrieval {
 
-RootRates root_rates(const MotionDatabase& database, const Neighbourhood& neighbours) {
+RootRates root_rates(const MotionDatabase& database, const WeightedPaths& weighted) {
   Eigen::Vector4d motion = Eigen::Vector4d::Zero();
   RootRates rates;
-  for (std::size_t i = 0; i < neighbours.paths.size(); ++i) {
-    const int frame = neighbours.paths[i].frame;
-    const double weight = neighbours.weights[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < weighted.paths.size(); ++i) {
+    const int frame = weighted.paths[i].frame;
+    const double weight = weighted.weights[static_cast<Eigen::Index>(i)];
     motion += weight * database.root_motion().row(frame).transpose().cast<double>();
     rates.contacts += weight * database.contacts().row(frame).transpose().cast<double>();
   }

@@ -18,7 +18,7 @@ struct RootRates {
   Eigen::Vector2d contacts = Eigen::Vector2d::Zero();  // share of neighbours that stand
 };
 
-RootRates root_rates(const MotionDatabase& database, const Neighbourhood& neighbours);
+RootRates root_rates(const MotionDatabase& database, const WeightedPaths& weighted);
 
 // Follows the root through a performance that starts at the origin, facing forward.
 //

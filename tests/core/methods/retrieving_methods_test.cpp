@@ -3,6 +3,7 @@
 // What every method that retrieves from a database must do, live and on whole takes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -141,6 +142,31 @@ TEST_P(EachWay, GivesTheSameResultsAgain) {
   solve({take_.begin() + 40, take_.begin() + 47}, Progress());
   expect_same(solve(take_, Progress()), first);
   expect_same(made()(take_, Progress()), first);
+}
+
+TEST_P(EachWay, HangsOnNoRounding) {
+  const auto solve = made();
+  const auto& skeleton = shared_database()->skeleton();
+  const Motion plain = to_motion(solve(take_, Progress()), skeleton, 25.0);
+  testing::Random random(1);
+  auto take = take_;
+  for (auto& reading : take) reading.specific_force += 1e-6 * random.matrix(3, 4, 1.0);
+  const Motion other = to_motion(solve(take, Progress()), skeleton, 25.0);
+  for (int t = 0; t < plain.num_frames(); ++t) {
+    const JointTransforms a = plain.transforms(t), b = other.transforms(t);
+    for (std::size_t j = 0; j < a.end.size(); ++j)
+      ASSERT_LT((a.end[j] - b.end[j]).norm(), 1e-3) << t << " " << j;
+  }
+}
+
+TEST_P(EachWay, TurnsNoJointFasterThanPeopleCan) {
+  auto take = take_;
+  std::swap_ranges(take.begin() + 30, take.begin() + 40, take.begin() + 60);  // and back at once
+  const auto estimates = made()(take, Progress());
+  for (std::size_t t = 1; t < estimates.size(); ++t)
+    for (std::size_t j = 0; j < estimates[t].rotations.size(); ++j)
+      EXPECT_LT(estimates[t].rotations[j].angularDistance(estimates[t - 1].rotations[j]),
+                1400.0 * kRadiansPerDegree / 25.0 + 1e-9);
 }
 
 TEST_P(EachWay, NeverUsesExcludedClips) {

@@ -14,7 +14,7 @@ TEST(Config, OfLiveQualityLooksOneFrameAhead) {
   EXPECT_EQ(retrieval::FeatureLayout(config.features, 25.0).look_ahead(), 1);
   EXPECT_EQ(retrieval::FeatureLayout(config.features, 50.0).look_ahead(), 2);
   EXPECT_EQ(retrieval::FeatureLayout(config.regression_features, 25.0).look_ahead(), 1);
-  EXPECT_EQ(config.smoothing_s, 0.0);
+  EXPECT_GT(config.fit.step, 0.0);
 }
 
 TEST(Config, OfWholeTakesLooksAsFarAheadAsBack) {
@@ -24,13 +24,16 @@ TEST(Config, OfWholeTakesLooksAsFarAheadAsBack) {
     const retrieval::FeatureLayout layout(parts, 25.0);
     EXPECT_EQ(layout.look_ahead(), layout.reach_back());
   }
+  EXPECT_GT(config.fit.smoothness, live_config().fit.smoothness);
 }
 
 TEST(Config, TakesSettingsOnTopOfEither) {
-  const MethodSettings settings{"default", {{"sharpness", "2.5"}, {"use_tempo_copies", "false"}}};
+  const MethodSettings settings{
+      "default", {{"sharpness", "2.5"}, {"contact_weight", "7"}, {"use_tempo_copies", "false"}}};
   for (const auto& base : {live_config(), whole_take_config()}) {
     const Config config = with_settings(base, settings);
     EXPECT_EQ(config.sharpness, 2.5);
+    EXPECT_EQ(config.fit.contact, 7.0);
     EXPECT_FALSE(config.use_tempo_copies);
     EXPECT_EQ(config.forgetting, base.forgetting);
   }

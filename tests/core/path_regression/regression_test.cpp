@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tautges2011/neighbourhoods.hpp"
+#include "support/random.hpp"
 
 namespace sparse_mocap::path_regression {
 namespace {
@@ -100,22 +100,6 @@ TEST(RegressionWeights, AreThoseOfThePathsWhenAllFeaturesAreAlike) {
   Problem problem = random_problem(random, 3, 10);
   problem.features.setConstant(2.0);
   EXPECT_LT((found_weights(problem, 1.0) - problem.weights).norm(), 1e-9);
-}
-
-TEST(ShiftToRegression, MovesTheMeanToThePredictionAndKeepsDifferences) {
-  Random random(6);
-  retrieval::Neighbourhood neighbours = testing::random_neighbourhood(random, 12);
-  const retrieval::Neighbourhood before = neighbours;
-  Eigen::VectorXd weights = random.column(12, 1.0);
-  weights /= weights.sum();
-  shift_to_regression(neighbours, weights);
-  EXPECT_LT((neighbours.angles * neighbours.weights - before.angles * weights).norm(), 1e-9);
-  EXPECT_LT((neighbours.positions * neighbours.weights - before.positions * weights).norm(), 1e-9);
-  const auto spread = [](const Eigen::MatrixXd& m) {
-    return Eigen::MatrixXd(m.colwise() - m.col(0));
-  };
-  EXPECT_LT((spread(neighbours.angles) - spread(before.angles)).norm(), 1e-9);
-  EXPECT_LT((spread(neighbours.positions) - spread(before.positions)).norm(), 1e-9);
 }
 
 }  // namespace

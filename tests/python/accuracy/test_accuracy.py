@@ -31,21 +31,23 @@ STANDING_MPS = 0.15
 
 ANKLES = ("left_ankle", "right_ankle")
 FIGURES = [  # sensors, quality, what is measured, how much it is, and by how much it may differ
-    ("wrists and ankles", "live", "error_cm", 2.955, 0.07),
-    ("wrists and ankles", "live", "lag_ms", 5.1, 3.0),
-    ("wrists and ankles", "live", "slide_cmps", 3.58, 0.6),
-    ("wrists and ankles", "live", "jerk_kmps3", 0.099, 0.006),
-    ("wrists and ankles", "whole take", "error_cm", 2.855, 0.07),
-    ("wrists and ankles", "whole take", "lag_ms", -0.1, 2.0),
-    ("wrists and ankles", "whole take", "slide_cmps", 2.80, 0.5),
-    ("wrists and ankles", "whole take", "jerk_kmps3", 0.0593, 0.006),
-    ("with gyroscopes", "live", "error_cm", 2.689, 0.07),
-    ("with gyroscopes", "live", "hands_cm", 4.80, 0.15),
-    ("with gyroscopes", "live", "jerk_kmps3", 0.123, 0.010),
-    ("with gyroscopes", "whole take", "error_cm", 2.664, 0.07),
-    ("with gyroscopes", "whole take", "hands_cm", 5.07, 0.15),
-    ("ankles", "live", "error_cm", 5.14, 0.15),
-    ("ankles", "whole take", "error_cm", 4.92, 0.15),
+    ("wrists and ankles", "live", "error_cm", 3.083, 0.07),
+    ("wrists and ankles", "live", "lag_ms", 4.4, 3.0),
+    ("wrists and ankles", "live", "slide_cmps", 0.79, 0.3),
+    ("wrists and ankles", "live", "jerk_kmps3", 0.0669, 0.004),
+    ("wrists and ankles", "whole take", "error_cm", 2.778, 0.07),
+    ("wrists and ankles", "whole take", "lag_ms", -0.6, 2.0),
+    ("wrists and ankles", "whole take", "slide_cmps", 0.8, 0.3),
+    ("wrists and ankles", "whole take", "jerk_kmps3", 0.0523, 0.004),
+    ("wrists and ankles", "live", "wrist_turn_deg", 0.282, 0.03),
+    ("wrists and ankles", "whole take", "wrist_turn_deg", 0.243, 0.03),
+    ("with gyroscopes", "live", "error_cm", 2.775, 0.07),
+    ("with gyroscopes", "live", "hands_cm", 4.88, 0.15),
+    ("with gyroscopes", "live", "jerk_kmps3", 0.0649, 0.005),
+    ("with gyroscopes", "whole take", "error_cm", 2.566, 0.07),
+    ("with gyroscopes", "whole take", "hands_cm", 5.0, 0.15),
+    ("ankles", "live", "error_cm", 5.71, 0.15),
+    ("ankles", "whole take", "error_cm", 4.65, 0.15),
 ]
 
 
@@ -156,6 +158,15 @@ def jerk_kmps3(performed: Motion, estimate: Motion) -> float:
     return float(np.linalg.norm(third, axis=2).mean()) / 1000.0
 
 
+def wrist_turn_deg(performed: Motion, estimate: Motion) -> float:
+    """Mean turn of the two wrists from frame to frame."""
+    joints = [estimate.skeleton.names.index(name) for name in ("lwrist", "rwrist")]
+    turns = np.asarray(estimate.rotations)[:, joints]
+    cosine = np.abs((turns[1:] * turns[:-1]).sum(axis=2))
+    return float(np.degrees(2.0 * np.arccos(np.minimum(cosine, 1.0))).mean())
+
+
 MEASURES: dict[str, Callable[[Motion, Motion], float]] = {
-    measure.__name__: measure for measure in (error_cm, hands_cm, slide_cmps, lag_ms, jerk_kmps3)
+    measure.__name__: measure
+    for measure in (error_cm, hands_cm, slide_cmps, lag_ms, jerk_kmps3, wrist_turn_deg)
 }

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A test's truth, and how estimates are compared with it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import Clip, Motion, MotionDatabase
+from ..table_errors import TableError
+from .metrics import (
+    frame_errors,
+    interpolated,
+    joint_angle_errors_deg,
+    joint_errors,
+    mean_jerk,
+    nearest,
+)
+from .movement import (
+    Movement,
+    World,
+    drifts,
+    headings_rad,
+    largest_step_cm,
+    share_of_fast_turns,
+    share_under_floor,
+    standing_speed_cmps,
+    turns_deg,
+)
+from .performance import heading_rotations
+from .result import ClipResult, clip_result
+
+__all__ = ["Estimate", "Truth", "world_of"]
+
+Floats = NDArray[np.float64]
+
+_HEIGHT = 3  # column of the database's root motion
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Where a method or baseline puts the joints."""
+
+    label: str
+    times_s: Floats
+    positions: Floats
+    """(T, J, 3) m, heading frame."""
+    rotations: Floats | None = None
+    """(T, J, 4), root without heading; None for baselines that only know positions."""
+    world: World | None = None
+    """None like rotations."""
+    match: str | None = None
+    """How well the reconstruction says that it matches."""
+
+
+def world_of(motion: Motion, floor_m: float = 0.0) -> World:
+    """Returns what the measures of feet and root look at; floor_m is the floor's height."""
+    names = list(motion.skeleton.names)
+    ends = np.array(motion.joint_positions("world"))
+    ankles = ends[:, [names.index("ltibia"), names.index("rtibia")]]
+    ankles[..., 1] -= floor_m
+    headings = headings_rad(ends[:, names.index("lhipjoint")], ends[:, names.index("rhipjoint")])
+    return World(ankles, ends[:, names.index("root")][:, [0, 2]], headings)
+
+
+class Truth:
+    """What was performed: a clip as the database has it, and its motion."""
+
+    def __init__(self, database: MotionDatabase, clip: Clip, motion: Motion) -> None:
+        """Takes the clip's motion on the database's skeleton, at its rate."""
+        self.rate_hz = database.rate_hz
+        rows = slice(clip.begin, min(clip.end, clip.begin + motion.num_frames))
+        self.positions = np.asarray(database.array("positions")[rows], float)
+        count = len(self.positions)
+        self.positions = self.positions.reshape(count, -1, 3)
+        self.times_s = np.arange(count) / self.rate_hz
+        self.rotations = heading_rotations(motion)[:count]
+        root_height = np.asarray(database.array("root_motion")[rows], float)[:, _HEIGHT]
+        whole = world_of(motion, float(motion.joint_positions("world")[0, 0, 1] - root_height[0]))
+        self.world = World(whole.ankles[:count], whole.root[:count], whole.heading_rad[:count])
+        self.stands = np.asarray(database.array("contacts")[rows]) > 0.5
+        self.lowest_ankle_m = float(self.world.ankles[..., 1].min())
+        self.jerk_kmps3 = mean_jerk(self.positions, self.rate_hz)
+        self._problem = TableError(database.path, 0, "the performance is too short to compare")
+
+    def movement(self) -> Movement:
+        """Returns how the truth itself moves."""
+        return self._movement(
+            self.positions, self.rotations, self.world, np.full(len(self.positions), True)
+        )
+
+    def compared(self, estimate: Estimate) -> ClipResult:
+        """Compares where both are known; the estimate is taken at the truth's times."""
+        times, label = estimate.times_s, estimate.match
+        is_known = (self.times_s >= times[0] - 1e-6) & (self.times_s <= times[-1] + 1e-6)
+        if not is_known.any():
+            raise self._problem
+        wanted = self.times_s[is_known]
+        errors = joint_errors(
+            self.positions[is_known], interpolated(times, estimate.positions, wanted)
+        )
+        jerk = mean_jerk(estimate.positions, self.rate_hz)
+        if estimate.rotations is None or estimate.world is None:
+            return clip_result(errors, frame_errors(errors), jerk)
+        angles = joint_angle_errors_deg(
+            self.rotations[is_known], nearest(times, estimate.rotations, wanted)
+        )
+        world = World(
+            interpolated(times, estimate.world.ankles, wanted),
+            interpolated(times, estimate.world.root, wanted),
+            interpolated(times, estimate.world.heading_rad, wanted),
+        )
+        moved = self._movement(estimate.positions, estimate.rotations, world, is_known)
+        return clip_result(errors, frame_errors(errors), jerk, angles, moved, label)
+
+    def _movement(
+        self, positions: Floats, rotations: Floats, world: World, is_known: NDArray[np.bool_]
+    ) -> Movement:
+        """Returns the figures; the world is given where is_known."""
+        true = World(
+            self.world.ankles[is_known],
+            self.world.root[is_known],
+            self.world.heading_rad[is_known],
+        )
+        root_drift, heading_drift = drifts(true, world, self.rate_hz)
+        return Movement(
+            turns_deg(rotations).mean(axis=0),
+            share_of_fast_turns(rotations),
+            largest_step_cm(positions),
+            standing_speed_cmps(world.ankles, self.stands[is_known], self.rate_hz),
+            share_under_floor(world.ankles, self.lowest_ankle_m),
+            root_drift,
+            heading_drift,
+        )

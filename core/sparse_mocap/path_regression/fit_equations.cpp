@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/path_regression/fit_equations.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "sparse_mocap/motion/heading.hpp"
+#include "sparse_mocap/motion/standard_skeleton.hpp"
+
+namespace sparse_mocap::path_regression {
+namespace {
+
+constexpr std::array<double, 1> kHere{1.0};
+constexpr std::array<double, 2> kFirstDifference{1.0, -1.0};
+constexpr std::array<double, 3> kSecondDifference{1.0, -2.0, 1.0};
+constexpr Eigen::Index kRootUnknowns = 4;  // position, heading
+
+}  // namespace
+
+FitEquations::FitEquations(const Skeleton& skeleton, double frame_time_s, const FitWeights& weights,
+                           std::span<const FittedFrame> frames,
+                           std::span<const FrameTarget> targets, int first_free, bool with_system)
+    : skeleton_(skeleton),
+      frame_time_s_(frame_time_s),
+      weights_(weights),
+      frames_(frames),
+      targets_(targets),
+      first_free_(first_free),
+      num_angles_(skeleton.num_angles()),
+      seen_(frames.size()) {
+  const int n = static_cast<int>(frames.size());
+  if (with_system) system_.emplace(n - first_free, num_angles_ + static_cast<int>(kRootUnknowns));
+  for (int t = std::max(0, first_free - BandedSystem::kReach); t < n; ++t) see(t);
+  for (int t = first_free; t < n; ++t) add_frame(t);
+}
+
+void FitEquations::see(int t) {
+  Seen& seen = seen_[static_cast<std::size_t>(t)];
+  const auto& rotations = frames_[static_cast<std::size_t>(t)].rotations;
+  forward_kinematics(skeleton_, Vec3::Zero(), rotations, seen.pose);
+  seen.points = pose_points(seen.pose, weights_.lever_m);
+  if (!system_ || !is_free(t)) return;
+  const auto [ends, turns] = step_jacobians(skeleton_, rotations, seen.pose);
+  seen.jacobian.resize(2 * ends.rows(), ends.cols());
+  seen.jacobian << ends, std::sqrt(2.0) * weights_.lever_m * turns;
+}
+
+void FitEquations::add_frame(int t) {
+  add_pose_terms(t);
+  add_inclination(t);
+  add_root_terms(t);
+  for (const int side : {0, 1}) add_contact(t, side);
+}
+
+void FitEquations::add_pose_terms(int t) {
+  const FrameTarget& target = targets_[static_cast<std::size_t>(t)];
+  add_points(weights_.pose, t, kHere, &target.points);
+  if (t >= 1 && target.step.size() > 0)
+    add_points(weights_.step, t, kFirstDifference, &target.step);
+  if (t >= 2) add_points(weights_.smoothness, t, kSecondDifference, nullptr);
+}
+
+// weight * |sum_k factors_k points(t - k) - target|^2.
+void FitEquations::add_points(double weight, int t, std::span<const double> factors,
+                              const Eigen::VectorXd* target) {
+  if (weight <= 0.0) return;
+  const auto seen = [&](std::size_t k) -> const Seen& {
+    return seen_[static_cast<std::size_t>(t) - k];
+  };
+  Eigen::VectorXd residual = factors[0] * seen(0).points;
+  for (std::size_t k = 1; k < factors.size(); ++k) residual += factors[k] * seen(k).points;
+  if (target != nullptr) residual -= *target;
+  value_ += weight * residual.squaredNorm();
+  if (!system_) return;
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    const int row = t - static_cast<int>(k) - first_free_;
+    if (row < 0) break;
+    system_->right(row).head(num_angles_) -= weight * factors[k] * pulled(seen(k), residual);
+    for (std::size_t l = k; l < factors.size(); ++l) {
+      const int column = t - static_cast<int>(l) - first_free_;
+      if (column < 0) break;
+      system_->block(row, column).topLeftCorner(num_angles_, num_angles_).noalias() +=
+          weight * factors[k] * factors[l] * seen(k).jacobian.transpose() * seen(l).jacobian;
+    }
+  }
+}
+
+// d points^T residual. Of the tips only the part that turns their joint counts: for each axis a of
+// a joint and its tip's residual r the moment a x r.
+Eigen::VectorXd FitEquations::pulled(const Seen& seen, const Eigen::VectorXd& residual) const {
+  const Eigen::Index ends = 3 * skeleton_.num_joints();
+  Eigen::VectorXd pull(2 * ends);
+  pull.head(ends) = residual.head(ends);
+  for (Eigen::Index j = 0; j < skeleton_.num_joints(); ++j) {
+    Vec3 moment = Vec3::Zero();
+    const Mat3& R = seen.pose.R_world_joint[static_cast<std::size_t>(j)];
+    for (Eigen::Index a = 0; a < 3; ++a)
+      moment += R.col(a).cross(Vec3(residual.segment<3>(ends + 9 * j + 3 * a)));
+    pull.segment<3>(ends + 3 * j) = moment / std::sqrt(2.0);
+  }
+  return seen.jacobian.transpose() * pull;
+}
+
+void FitEquations::add_inclination(int t) {
+  const InclinationTarget& target = targets_[static_cast<std::size_t>(t)].inclination;
+  const Seen& seen = seen_[static_cast<std::size_t>(t)];
+  for (std::size_t k = 0; k < target.joints.size(); ++k) {
+    const int joint = target.joints[k];
+    const int parent = skeleton_.joint(joint).parent;
+    const auto at = [&](int j) -> const Vec3& {
+      return seen.pose.end[static_cast<std::size_t>(j)];
+    };
+    const double rise = kUp.dot(at(joint) - at(parent));
+    const Eigen::VectorXd residual =
+        Eigen::VectorXd::Constant(1, rise - target.rises_m[static_cast<Eigen::Index>(k)]);
+    Eigen::MatrixXd jacobian = no_share(1);
+    if (system_)
+      jacobian.leftCols(num_angles_) = kUp.transpose() * (seen.jacobian.middleRows(3 * joint, 3) -
+                                                          seen.jacobian.middleRows(3 * parent, 3));
+    add_small(weights_.inclination, residual, {{t, std::move(jacobian)}});
+  }
+}
+
+// Position and heading of the root: as the retrieved motions have them, and smooth.
+void FitEquations::add_root_terms(int t) {
+  const auto frame = [&](int at) -> const FittedFrame& {
+    return frames_[static_cast<std::size_t>(at)];
+  };
+  const retrieval::RootRates& rates = targets_[static_cast<std::size_t>(t)].root;
+  const auto share = [&](int at, double factor) {
+    Eigen::MatrixXd jacobian = no_share(kRootUnknowns);
+    jacobian.rightCols(kRootUnknowns).diagonal().setConstant(factor);
+    return Share{at, std::move(jacobian)};
+  };
+  const auto stacked = [&](int at) {
+    return Eigen::Vector4d(frame(at).root_position.x(), frame(at).root_position.y(),
+                           frame(at).root_position.z(), frame(at).yaw_rad);
+  };
+  Eigen::VectorXd height = Eigen::VectorXd::Constant(1, stacked(t)[1] - rates.height_m);
+  add_small(weights_.root_height, height, {{t, share(t, 1.0).jacobian.row(1)}});
+  if (t < 1) return;
+  const Mat3 R_world_heading = yaw_rotation(frame(t - 1).yaw_rad);
+  const Vec3 step =
+      R_world_heading * Vec3(rates.velocity_mps.x(), 0.0, rates.velocity_mps.y()) * frame_time_s_;
+  Eigen::VectorXd moved = stacked(t) - stacked(t - 1);
+  moved -= Eigen::Vector4d(step.x(), moved[1], step.z(), rates.yaw_rate_radps * frame_time_s_);
+  Share now = share(t, 1.0), before = share(t - 1, -1.0);
+  now.jacobian.row(1).setZero();
+  before.jacobian.row(1).setZero();
+  before.jacobian.col(num_angles_ + 3).head<3>() -= kUp.cross(step);
+  add_small(weights_.root_step, moved, {std::move(now), std::move(before)});
+  if (t < 2) return;
+  add_small(weights_.root_smoothness, stacked(t) - 2.0 * stacked(t - 1) + stacked(t - 2),
+            {share(t, 1.0), share(t - 1, -2.0), share(t - 2, 1.0)});
+}
+
+// Where an ankle is in the world.
+Vec3 FitEquations::foot(int t, int ankle) const {
+  const FittedFrame& frame = frames_[static_cast<std::size_t>(t)];
+  return frame.root_position +
+         yaw_rotation(frame.yaw_rad) *
+             seen_[static_cast<std::size_t>(t)].pose.end[static_cast<std::size_t>(ankle)];
+}
+
+void FitEquations::add_contact(int t, int side) {
+  const double stands = targets_[static_cast<std::size_t>(t)].root.contacts[side];
+  if (t < 1 || stands <= 0.0) return;
+  const int ankle = side == 0 ? standard_joint::ltibia : standard_joint::rtibia;
+  const auto share = [&](int at, double factor) {
+    Eigen::MatrixXd jacobian = no_share(3);
+    if (!system_ || !is_free(at)) return Share{at, std::move(jacobian)};
+    const FittedFrame& frame = frames_[static_cast<std::size_t>(at)];
+    jacobian.leftCols(num_angles_) =
+        yaw_rotation(frame.yaw_rad) *
+        seen_[static_cast<std::size_t>(at)].jacobian.middleRows(3 * ankle, 3);
+    jacobian.middleCols(num_angles_, 3).setIdentity();
+    jacobian.col(num_angles_ + 3) = kUp.cross(foot(at, ankle) - frame.root_position);
+    return Share{at, factor * jacobian};
+  };
+  add_small(weights_.contact * stands * stands, foot(t, ankle) - foot(t - 1, ankle),
+            {share(t, 1.0), share(t - 1, -1.0)});
+}
+
+void FitEquations::add_small(double weight, const Eigen::VectorXd& residual,
+                             std::vector<Share> shares) {
+  if (weight <= 0.0) return;
+  value_ += weight * residual.squaredNorm();
+  if (!system_) return;
+  for (std::size_t k = 0; k < shares.size() && is_free(shares[k].frame); ++k) {
+    const int row = shares[k].frame - first_free_;
+    system_->right(row).noalias() -= weight * shares[k].jacobian.transpose() * residual;
+    for (std::size_t l = k; l < shares.size() && is_free(shares[l].frame); ++l)
+      system_->block(row, shares[l].frame - first_free_).noalias() +=
+          weight * shares[k].jacobian.transpose() * shares[l].jacobian;
+  }
+}
+
+Eigen::MatrixXd FitEquations::no_share(Eigen::Index rows) const {
+  return Eigen::MatrixXd::Zero(rows, num_angles_ + kRootUnknowns);
+}
+
+}  // namespace sparse_mocap::path_regression

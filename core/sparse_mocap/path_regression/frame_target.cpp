@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/path_regression/frame_target.hpp"
+
+#include "sparse_mocap/motion/standard_skeleton.hpp"
+#include "sparse_mocap/sensors/sites.hpp"
+
+namespace sparse_mocap::path_regression {
+namespace {
+
+bool is_on_limb(const Site& site) {
+  using namespace standard_joint;
+  return site.carrier != root && site.carrier != upperback && site.carrier != thorax &&
+         site.carrier != head;
+}
+
+}  // namespace
+
+Eigen::VectorXd pose_points(const JointTransforms& pose, double lever_m) {
+  const auto n = static_cast<Eigen::Index>(pose.end.size());
+  Eigen::VectorXd points(12 * n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    points.segment<3>(3 * j) = pose.end[static_cast<std::size_t>(j)];
+    points.segment<9>(3 * n + 9 * j) =
+        lever_m * pose.R_world_joint[static_cast<std::size_t>(j)].reshaped();
+  }
+  return points;
+}
+
+InclinationTarget inclination_target(const Skeleton& skeleton, const Reading& reading,
+                                     std::span<const retrieval::Signal> signals) {
+  InclinationTarget target;
+  std::vector<double> rises_m;
+  for (const auto& signal : signals) {
+    const Site& site = all_sites()[static_cast<std::size_t>(signal.site)];
+    if (signal.channel != Channel::gravity_direction || !is_on_limb(site)) continue;
+    const Vec3 up = reading.gravity_direction.col(signal.sensor);
+    if (!(up.norm() > 0.0)) continue;
+    // A sensor on a limb has its x axis along it, away from the body.
+    rises_m.push_back(up.normalized().x() * skeleton.joint(site.carrier).bone.norm());
+    target.joints.push_back(site.carrier);
+  }
+  target.rises_m =
+      Eigen::Map<const Eigen::VectorXd>(rises_m.data(), static_cast<Eigen::Index>(rises_m.size()));
+  return target;
+}
+
+}  // namespace sparse_mocap::path_regression

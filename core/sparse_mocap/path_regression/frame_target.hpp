@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "sparse_mocap/motion/skeleton.hpp"
+#include "sparse_mocap/readings/reading.hpp"
+#include "sparse_mocap/retrieval/root_motion.hpp"
+#include "sparse_mocap/retrieval/signals.hpp"
+
+namespace sparse_mocap::path_regression {
+
+// Where the points of a pose are, m, in the heading frame with the root at the origin: the joints'
+// ends (3 joints numbers) and then, of each joint, the tips of its three axes as seen from its end
+// (9 joints), each lever_m long. Ends say nothing of how a bone is turned about itself; tips do.
+// Points of several poses can be averaged, whatever the rotations.
+Eigen::VectorXd pose_points(const JointTransforms& pose, double lever_m);
+
+// How high limbs' ends should be above their beginnings.
+struct InclinationTarget {
+  std::vector<int> joints;
+  Eigen::VectorXd rises_m;
+};
+
+// What gravity directions say of the limbs that carry the sensors. Sensors without one, and those
+// on trunk and head, take no part.
+InclinationTarget inclination_target(const Skeleton& skeleton, const Reading& reading,
+                                     std::span<const retrieval::Signal> signals);
+
+// What retrieval and sensors say of one frame.
+struct FrameTarget {
+  Eigen::VectorXd points;  // as pose_points: mean of the retrieved poses
+  Eigen::VectorXd step;    // how the points move into this frame; empty: not known
+  InclinationTarget inclination;
+  retrieval::RootRates root;
+};
+
+}  // namespace sparse_mocap::path_regression

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "sparse_mocap/motion/joint_rotations.hpp"
+#include "sparse_mocap/path_regression/frame_target.hpp"
+#include "sparse_mocap/reconstruction/pose_estimate.hpp"
+
+namespace sparse_mocap::path_regression {
+
+// A frame that is being fitted: the pose without heading, and where it stands in the world.
+struct FittedFrame {
+  JointRotations rotations;
+  Vec3 root_position = Vec3::Zero();  // m
+  double yaw_rad = 0.0;
+};
+
+// What the terms of a fit count. Residuals are in metres, or in radians, squared and summed.
+struct FitWeights {
+  double lever_m = 0.1;      // of the axes' tips, see pose_points
+  double pose = 1.0;         // points where the retrieved poses have them
+  double step = 0.0;         // points move on as in the retrieved motions
+  double smoothness = 0.0;   // second differences of the points
+  double inclination = 6.0;  // limbs inclined as measured
+  double contact = 100.0;    // a foot that stands stays where it is
+  double root_step = 30.0;   // the root moves and turns as in the retrieved motions
+  double root_height = 5.0;
+  double root_smoothness = 2.0;  // second differences of the root's position and heading
+};
+
+// Fits the frames of a take, or its last ones, all at once: the pose of each frame to what was
+// retrieved and measured for it, and neighbouring frames to each other. Levenberg-Marquardt; each
+// step is the solution of one banded system.
+class TakeFit {
+ public:
+  // The skeleton must outlive the fit.
+  TakeFit(const Skeleton& skeleton, double frame_time_s, const FitWeights& weights)
+      : skeleton_(skeleton), frame_time_s_(frame_time_s), weights_(weights) {}
+
+  // Fits frames [first_free, end) from where they are; those before stay. One target a frame.
+  // Gives the value that is reached, never more than at the start.
+  double fit(std::vector<FittedFrame>& frames, std::span<const FrameTarget> targets,
+             std::size_t first_free, int max_iterations) const;
+  // The sum of all terms that depend on frames [first_free, end).
+  double value(const std::vector<FittedFrame>& frames, std::span<const FrameTarget> targets,
+               std::size_t first_free) const;
+
+ private:
+  const Skeleton& skeleton_;
+  double frame_time_s_;
+  FitWeights weights_;
+};
+
+// Where a fit of a frame can start: a pose that has its points about where the target asks for
+// them, the root moved on from the frame before (null: at the origin, facing forward).
+FittedFrame start_of(const Skeleton& skeleton, double frame_time_s, const FrameTarget& target,
+                     const FittedFrame* before);
+
+// The pose in the world.
+PoseEstimate to_estimate(const FittedFrame& frame, double time_s, const Eigen::Vector2d& contacts,
+                         Diagnostics diagnostics);
+
+}  // namespace sparse_mocap::path_regression

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/path_regression/frame_target.hpp"
+
+#include <gtest/gtest.h>
+
+#include "sparse_mocap/motion/standard_skeleton.hpp"
+#include "sparse_mocap/sensors/sites.hpp"
+#include "support/synthetic.hpp"
+
+namespace sparse_mocap::path_regression {
+namespace {
+
+using namespace standard_joint;
+using testing::Random;
+
+const Skeleton kSkeleton = testing::template_skeleton();
+
+JointTransforms posed(const Eigen::VectorXd& angles) {
+  JointTransforms pose;
+  forward_kinematics(kSkeleton, Vec3::Zero(), angles, pose);
+  return pose;
+}
+
+// What a sensor reads of gravity in a pose of the standard skeleton.
+Vec3 gravity_direction_at(const Eigen::VectorXd& angles, int site) {
+  const Site& worn = all_sites()[static_cast<std::size_t>(site)];
+  const Mat3 R_world_sensor =
+      posed(angles).R_world_joint[static_cast<std::size_t>(worn.orientation)] * worn.R_joint_sensor;
+  return R_world_sensor.transpose() * kUp;
+}
+
+TEST(PosePoints, AreEndsAndTheTipsOfTheAxes) {
+  Random random(1);
+  const JointTransforms pose = posed(random.column(kNumStandardAngles, 0.8));
+  const Eigen::VectorXd points = pose_points(pose, 0.2);
+  ASSERT_EQ(points.size(), 12 * kNumStandardJoints);
+  EXPECT_EQ(Vec3(points.segment<3>(3 * rwrist)), pose.end[rwrist]);
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    EXPECT_EQ(Vec3(points.segment<3>(3 * kNumStandardJoints + 9 * head + 3 * axis)),
+              Vec3(0.2 * pose.R_world_joint[head].col(axis)));
+}
+
+TEST(InclinationTarget, IsMetInThePoseThatWasMeasured) {
+  Random random(4);
+  const Channels inertial = Channel::specific_force | Channel::gravity_direction;
+  const std::vector<Sensor> sensors{{find_site("left_wrist"), 1.0, inertial},
+                                    {find_site("right_ankle"), 1.0, inertial},
+                                    {find_site("left_thigh"), 1.0, Channel::specific_force},
+                                    {find_site("head"), 1.0, inertial}};
+  const auto signals = retrieval::compared_signals(sensors, true);
+  for (int trial = 0; trial < 10; ++trial) {
+    const Eigen::VectorXd angles = random.column(kNumStandardAngles, 0.6);
+    Reading reading(4);
+    for (Eigen::Index s = 0; s < 4; ++s)
+      reading.gravity_direction.col(s) =
+          gravity_direction_at(angles, sensors[static_cast<std::size_t>(s)].site);
+    const auto target = inclination_target(kSkeleton, reading, signals);
+    ASSERT_EQ(target.joints, (std::vector<int>{lradius, rtibia}));
+    const JointTransforms pose = posed(angles);
+    EXPECT_NEAR(target.rises_m[0], pose.end[lradius].y() - pose.end[lhumerus].y(), 1e-12);
+    EXPECT_NEAR(target.rises_m[1], pose.end[rtibia].y() - pose.end[rfemur].y(), 1e-12);
+  }
+}
+
+TEST(InclinationTarget, LeavesSilentSensorsOut) {
+  const auto signals = retrieval::compared_signals(
+      {{find_site("left_wrist"), 1.0, Channel::specific_force | Channel::gravity_direction}}, true);
+  EXPECT_TRUE(inclination_target(kSkeleton, Reading(1), signals).joints.empty());
+}
+
+}  // namespace
+}  // namespace sparse_mocap::path_regression
