@@ -3,6 +3,9 @@
 
 import os
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from ._core_motion import Motion, Skeleton
 from ._core_types import Floats, Path
 
@@ -48,6 +51,25 @@ class SkeletonMapping:
         Limbs point where the standard's do; joints that map to nothing keep their rest; root
         translation is scaled by the ratio of leg lengths. Raises ValueError for a motion that is
         not on a standard skeleton.
+        """
+    def lock_feet(
+        self,
+        motion: Motion,
+        contacts: ArrayLike,
+        *,
+        strength: float,
+        ankle_height_m: float,
+        least_certainty: float = 0.5,
+        fastest_mps: float = 0.5,
+        highest_m: float = 0.06,
+    ) -> tuple[Motion, NDArray[np.bool_]]:
+        """Returns the rig's motion with feet that stay where they stand, and when they do.
+
+        contacts (T, 2): how certain it is that the left and the right foot stand, 0 to 1; the
+        floor is at y = 0. A foot stands while it is certain enough, slower than fastest_mps and no
+        more than highest_m above ankle_height_m, where the ankle is while the foot is flat.
+        strength is from 0 to 1. The second result is (T, 2) bool. Raises ValueError for a motion
+        of a skeleton with other joints.
         """
     def limb_errors_rad(self, motion: Motion, standard: Motion) -> dict[str, tuple[float, float]]:
         """Returns the mean and worst angle between a motion's limbs and those of its transfer.

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <pybind11/eigen.h>
+
+#include <algorithm>
+
 #include "common.hpp"
 #include "sparse_mocap/formats/mapping_file.hpp"
+#include "sparse_mocap/retargeting/foot_lock.hpp"
 #include "sparse_mocap/retargeting/limb_errors.hpp"
 #include "sparse_mocap/retargeting/to_rig.hpp"
 #include "sparse_mocap/retargeting/to_standard.hpp"
@@ -48,6 +53,28 @@ std::pair<Motion, std::vector<std::string>> mapped_to_standard(
   const Skeleton target = skeleton ? *skeleton : make_standard_skeleton(mapping.found.bones);
   Motion out = to_standard(motion, mapping.found, target, &warnings);
   return {std::move(out), std::move(warnings)};
+}
+
+// What lock_feet returns, as arrays: stands (T, 2) of true and false.
+std::pair<Motion, py::array_t<bool>> with_locked_feet(
+    const Mapping& mapping, const Motion& motion,
+    const Eigen::Ref<const Eigen::MatrixX2d>& contacts, double strength, double ankle_height_m,
+    double least_certainty, double fastest_mps, double highest_m) {
+  require_same_skeleton(mapping, motion);
+  LockedFeet locked;
+  {
+    const py::gil_scoped_release release;
+    locked = lock_feet(motion, mapping.found, contacts.transpose(),
+                       {strength, ankle_height_m, {least_certainty, fastest_mps, highest_m}});
+  }
+  const auto num_frames = static_cast<py::ssize_t>(motion.num_frames());
+  py::array_t<bool> stands(std::vector<py::ssize_t>{num_frames, 2});
+  std::fill(stands.mutable_data(), stands.mutable_data() + stands.size(), false);
+  auto rows = stands.mutable_unchecked<2>();
+  for (py::ssize_t side = 0; side < 2; ++side)
+    for (const Stand& stand : locked.stands[static_cast<std::size_t>(side)])
+      for (py::ssize_t t = stand.begin; t < stand.end; ++t) rows(t, side) = true;
+  return {std::move(locked.motion), std::move(stands)};
 }
 
 Motion mapped_to_rig(const Mapping& mapping, const Motion& standard_motion) {
@@ -114,6 +141,16 @@ ValueError for a motion of a skeleton with other joints.)doc")
 Limbs point where the standard's do; joints that map to nothing keep their rest; root
 translation is scaled by the ratio of leg lengths. Raises ValueError for a motion that is
 not on a standard skeleton.)doc")
+      .def("lock_feet", &with_locked_feet, py::arg("motion"), py::arg("contacts"), py::kw_only(),
+           py::arg("strength"), py::arg("ankle_height_m"), py::arg("least_certainty") = 0.5,
+           py::arg("fastest_mps") = 0.5, py::arg("highest_m") = 0.06,
+           R"doc(Returns the rig's motion with feet that stay where they stand, and when they do.
+
+contacts (T, 2): how certain it is that the left and the right foot stand, 0 to 1; the
+floor is at y = 0. A foot stands while it is certain enough, slower than fastest_mps and no
+more than highest_m above ankle_height_m, where the ankle is while the foot is flat.
+strength is from 0 to 1. The second result is (T, 2) bool. Raises ValueError for a motion
+of a skeleton with other joints.)doc")
       .def(
           "limb_errors_rad", &errors_of, py::arg("motion"), py::arg("standard"), release(),
           R"doc(Returns the mean and worst angle between a motion's limbs and those of its transfer.

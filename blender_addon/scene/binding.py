@@ -1,29 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How the controls of a rig move its body: found by posing it, so that any rig can be asked."""
+"""How the controls of a rig move its body."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from bpy.types import Context, Object
-from mathutils import Matrix, Quaternion, Vector
+from mathutils import Quaternion, Vector
 
 from ..session.character import Character, RestBone
-from ..session.controls import Control, Controls, Mover
+from ..session.controls import Control, Controls, Limb, Mover, Placed
 from ..session.errors import InputError
 from ..session.retarget import Target
 from .armature import units_per_metre
 from .axes import AXES_BLENDER_CORE, Floats
-from .control_bones import PickedBones, picked_bones
+from .control_bones import IkLimb, PickedBones, picked_bones
 from .pose_memory import pose_kept
+from .rig_probe import Found, Probe, rotation_of
 
-_POSES = 3  # that are tried
-_LARGEST_TURN = 0.6  # rad
-_SAME = 1e-3
+_STUCK = 1e-6  # the determinant of how a bone answers to its location
 _EVEN = 1e-2  # how far the axes' scales may differ, relative
+_IK_ENDS = {
+    "FK": (),
+    "LEGS": ("ltibia", "rtibia"),
+    "IK": ("ltibia", "rtibia", "lradius", "rradius"),
+}
 
 
 @dataclass(frozen=True)
@@ -74,26 +76,164 @@ def character_of(context: Context, armature: Object) -> Character:
         return Character(armature.name, everything)
 
 
-def bind(context: Context, armature: Object) -> Target:
-    """The armature with its controls; its pose is as before afterwards. Raises InputError."""
+def bind(context: Context, armature: Object, limbs: str = "FK") -> Target:
+    """The armature with its controls; its pose is as before afterwards.
+
+    limbs: FK, IK, or LEGS for the legs' IK alone, where the rig has both. Raises InputError.
+    """
+    _check_visible(context, armature)
+    character = character_of(context, armature)
+    picked = picked_bones(armature)
+    mover = picked.mover or character.top
+    if mover not in armature.data.bones:
+        raise InputError(f'"{armature.name}": its body does not hang on one bone: parent its bones')
+    names = list(character.turned)
+    turns = list(range(len(names)))
+    if mover not in names:
+        names.append(mover)
+        turns.append(character.turned.index(character.pelvis) if picked.mover else -1)
+    chosen = _chosen_limbs(character, picked, limbs)
+    properties = dict(picked.properties)
+    for limb in chosen:
+        properties |= picked.ik_properties.get(limb.end, {})
+    with pose_kept(armature):
+        probe = Probe(context, armature)
+        free = [name for limb in chosen if not limb.is_switched for name in limb.shown]
+        with probe.at_rest(picked.properties, free):
+            found, response = probe.found(names, names), probe.response(mover)
+        with probe.at_rest(properties):
+            made = [_MadeLimb.of(probe, names, limb) for limb in chosen]
+    if abs(np.linalg.det(response)) < _STUCK:
+        raise InputError(
+            f'"{armature.name}": the bone "{mover}" cannot be moved, it is held by a constraint'
+        )
+    order = _followed_first([one.follows for one in found])
+    place = {names[number]: position for position, number in enumerate(order)}
+    thighs = (place[character.joints["lfemur"]], place[character.joints["rfemur"]])
+    space = own_space(context, armature)
+    by_ik = {bone for limb in chosen for bone in _limb_bones(character, limb)}
+    rig = Controls(
+        _controls(names, turns, found, order, by_ik),
+        Mover(place[mover], response, thighs),
+        space.R_armature_own,
+        space.units_per_metre,
+        properties,
+        tuple(_limb(armature, character, one, names, place) for one in made),
+    )
+    held = [names[number] for number in order if found[number].follows is None]
+    return Target(armature.name, character, rig, held)
+
+
+def _check_visible(context: Context, armature: Object) -> None:
     if armature.name not in context.view_layer.objects or not armature.visible_get():
         raise InputError(f'"{armature.name}" is hidden: show it in the viewport first')
     if armature.data.pose_position == "REST":
         raise InputError(f'"{armature.name}" shows its rest position: switch to Pose Position')
-    character = character_of(context, armature)
-    picked = picked_bones(armature)
-    names = list(character.turned)
-    mover = picked.mover or character.top
-    space = own_space(context, armature)
-    turns = [character.turned.index(name) for name in names]
-    if mover not in names:
-        names.append(mover)
-        is_rigify = bool(picked.mover)
-        turns.append(character.turned.index(character.pelvis) if is_rigify else -1)
-    with pose_kept(armature), _at_rest(context, armature, picked):
-        tries = list(_tries(context, armature, names))
-        response = _response(context, armature, mover)
-    return _target(armature, character, names, turns, mover, tries, response, picked, space)
+
+
+def _chosen_limbs(character: Character, picked: PickedBones, limbs: str) -> list[IkLimb]:
+    """Those that IK controls are to move."""
+    ends = {character.ends[joint] for joint in _IK_ENDS[limbs] if joint in character.ends}
+    every = set(character.ends.values())
+    return [
+        limb
+        for limb in picked.limbs
+        if limb.end in every and (limb.end in ends or not limb.is_switched)
+    ]
+
+
+def _limb_bones(character: Character, limb: IkLimb) -> tuple[str, str, str]:
+    """The bones of a limb: upper, lower and end."""
+    lower = next(joint for joint, end in character.ends.items() if end == limb.end)
+    upper = {"tibia": "femur", "radius": "humerus"}[lower[1:]]
+    return character.joints[lower[0] + upper], character.joints[lower], limb.end
+
+
+def _controls(
+    names: list[str], turns: list[int], found: list[Found], order: list[int], by_ik: set[str]
+) -> list[Control]:
+    place = {number: position for position, number in enumerate(order)}
+    return [
+        Control(
+            names[number],
+            turns[number],
+            rotation_of(found[number].T_armature_rest),
+            place.get(found[number].follows or 0, -1) if found[number].is_following else -1,
+            found[number].T_followed_frame,
+            names[number] not in by_ik,
+        )
+        for number in order
+    ]
+
+
+def _placed(probe: Probe, names: list[str], name: str) -> Placed:
+    """An IK control; it follows a control by that one's index among the names."""
+    [found] = probe.found(names, [name])
+    response = probe.response(name)
+    if found.is_following:
+        response = rotation_of(found.T_armature_followed).T @ response
+    follows = found.follows if found.is_following and found.follows is not None else -1
+    return Placed(name, follows, found.T_armature_rest, found.T_followed_frame, response)
+
+
+@dataclass(frozen=True)
+class _MadeLimb:
+    """A limb's IK controls; they follow controls by those ones' indices among the names."""
+
+    limb: IkLimb
+    target: Placed
+    pole: Placed | None
+    pole_angle_rad: float
+
+    @classmethod
+    def of(cls, probe: Probe, names: list[str], limb: IkLimb) -> _MadeLimb:
+        """Ask the rig."""
+        target = _placed(probe, names, limb.target)
+        if not limb.pole:
+            return cls(limb, target, None, 0.0)
+        pole = _placed(probe, names, limb.pole)
+        return cls(limb, target, pole, probe.pole_angle_rad(limb))
+
+
+def _limb(
+    armature: Object,
+    character: Character,
+    made: _MadeLimb,
+    names: list[str],
+    place: dict[str, int],
+) -> Limb:
+    bones = _limb_bones(character, made.limb)
+    heads = np.array([armature.data.bones[name].head_local for name in bones])
+
+    def at_place(placed: Placed) -> Placed:
+        follows = place[names[placed.follows]] if placed.follows >= 0 else -1
+        return replace(placed, follows=follows)
+
+    begin, middle, end = (place[name] for name in bones)
+    return Limb(
+        begin,
+        middle,
+        end,
+        target=at_place(made.target),
+        pole=at_place(made.pole) if made.pole is not None else None,
+        pole_angle_rad=made.pole_angle_rad,
+        rest=heads,
+    )
+
+
+def _followed_first(followed: list[int | None]) -> list[int]:
+    """The controls' indices, each after the one that it follows."""
+    order: list[int] = []
+    while len(order) < len(followed):
+        ready = [
+            number
+            for number, other in enumerate(followed)
+            if number not in order and (other is None or other < 0 or other in order)
+        ]
+        if not ready:  # they follow each other
+            ready = [number for number in range(len(followed)) if number not in order][:1]
+        order.extend(ready)
+    return order
 
 
 def _rest_bones(picked: PickedBones, space: OwnSpace) -> list[RestBone]:
@@ -115,156 +255,3 @@ def _rest_bones(picked: PickedBones, space: OwnSpace) -> list[RestBone]:
         RestBone(" armature", -1, top.head, top.tail),
         *(RestBone(bone.name, bone.parent + 1, bone.head, bone.tail) for bone in bones),
     ]
-
-
-@contextmanager
-def _at_rest(context: Context, armature: Object, picked: PickedBones) -> Iterator[None]:
-    """All bones at rest and FK switched on, for a while."""
-    for bone in armature.pose.bones:
-        bone.matrix_basis = Matrix()
-    set_properties(armature, picked.properties)
-    context.view_layer.update()
-    yield
-
-
-def set_properties(armature: Object, properties: dict[str, float]) -> None:
-    """Set custom properties of bones, as data paths from the object."""
-    for path, value in properties.items():
-        holder, _, name = path.rpartition("[")
-        bone = armature.path_resolve(holder)
-        key = name.strip('"]')
-        bone[key] = type(bone[key])(value)
-    armature.update_tag()
-
-
-@dataclass(frozen=True)
-class _Try:
-    """Where controls and their frames were in one pose."""
-
-    poses: list[Floats]  # (4, 4)
-    frames: list[Floats]
-
-
-def _tries(context: Context, armature: Object, names: list[str]) -> Iterator[_Try]:
-    """The rest pose, then poses in which each control is turned differently."""
-    random = np.random.default_rng(1)
-    for number in range(_POSES + 1):
-        for name in names:
-            axis, angle = random.normal(size=3), random.uniform(0.2, _LARGEST_TURN)
-            if number > 0:
-                turned = Quaternion(Vector(axis), angle).to_matrix().to_4x4()
-                armature.pose.bones[name].matrix_basis = turned
-        context.view_layer.update()
-        bones = [armature.pose.bones[name] for name in names]
-        poses = [np.array(bone.matrix) for bone in bones]
-        frames = [np.array(bone.matrix @ bone.matrix_basis.inverted()) for bone in bones]
-        yield _Try(poses, frames)
-    for name in names:
-        armature.pose.bones[name].matrix_basis = Matrix()
-
-
-def _response(context: Context, armature: Object, mover: str) -> Floats:
-    """(3, 3) how the bone moves in the armature with its location's three numbers."""
-    bone = armature.pose.bones[mover]
-    step = armature.data.bones[mover].length
-    columns = []
-    context.view_layer.update()
-    rest = np.array(bone.matrix.translation)
-    for axis in range(3):
-        bone.location = [step if axis == other else 0.0 for other in range(3)]
-        context.view_layer.update()
-        columns.append((np.array(bone.matrix.translation) - rest) / step)
-    bone.location = (0.0, 0.0, 0.0)
-    return np.array(columns).T
-
-
-def _target(
-    armature: Object,
-    character: Character,
-    names: list[str],
-    turns: list[int],
-    mover: str,
-    tries: list[_Try],
-    response: Floats,
-    picked: PickedBones,
-    space: OwnSpace,
-) -> Target:
-    if abs(np.linalg.det(response)) < 1e-6:
-        raise InputError(
-            f'"{armature.name}": the bone "{mover}" cannot be moved, it is held by a constraint'
-        )
-    followed = [_followed(number, tries) for number in range(len(names))]
-    order = _followed_first(followed)
-    held = [names[number] for number in order if followed[number] is None]
-    place = {number: position for position, number in enumerate(order)}
-    controls = []
-    for number in order:
-        follows = followed[number]
-        follows = -1 if follows is None else follows
-        frame = tries[0].frames[number]
-        pose = tries[0].poses[follows] if follows >= 0 else np.eye(4)
-        controls.append(
-            Control(
-                names[number],
-                turns[number],
-                _rotation(tries[0].poses[number]),
-                place[follows] if follows >= 0 else -1,
-                _unscaled(np.linalg.inv(_unscaled(pose)) @ _unscaled(frame)),
-            )
-        )
-    thighs = [names.index(character.joints[joint]) for joint in ("lfemur", "rfemur")]
-    moving = Mover(place[names.index(mover)], response, (place[thighs[0]], place[thighs[1]]))
-    return Target(
-        armature.name,
-        character,
-        Controls(
-            controls, moving, space.R_armature_own, space.units_per_metre, dict(picked.properties)
-        ),
-        held,
-    )
-
-
-def _followed(number: int, tries: list[_Try]) -> int | None:
-    """The control that a control's frame moves with; -1: none; None: with no single one."""
-    candidates = [other for other in range(len(tries[0].poses)) if other != number]
-    errors = {-1: _change([one.frames[number] for one in tries])}
-    for other in candidates:
-        relative = [
-            np.linalg.inv(_unscaled(one.poses[other])) @ _unscaled(one.frames[number])
-            for one in tries
-        ]
-        errors[other] = _change(relative)
-    best = min(errors, key=lambda other: errors[other])
-    return best if errors[best] < _SAME else None
-
-
-def _change(matrices: list[Floats]) -> float:
-    """How far the rotations are from being one."""
-    first = _rotation(matrices[0])
-    return max(float(np.abs(_rotation(matrix) - first).max()) for matrix in matrices)
-
-
-def _rotation(matrix: Floats) -> Floats:
-    turned = matrix[:3, :3]
-    return np.asarray(turned / np.linalg.norm(turned, axis=0))
-
-
-def _unscaled(matrix: Floats) -> Floats:
-    unscaled = matrix.copy()
-    unscaled[:3, :3] = _rotation(matrix)
-    return unscaled
-
-
-def _followed_first(followed: list[int | None]) -> list[int]:
-    """The controls' indices, each after the one that it follows."""
-    order: list[int] = []
-    while len(order) < len(followed):
-        ready = [
-            number
-            for number, other in enumerate(followed)
-            if number not in order and (other is None or other < 0 or other in order)
-        ]
-        if not ready:  # they follow each other
-            ready = [number for number in range(len(followed)) if number not in order][:1]
-        order.extend(ready)
-    return order

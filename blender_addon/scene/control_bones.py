@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from bpy.types import Bone, Object
@@ -26,6 +27,20 @@ class Picked:
 
 
 @dataclass(frozen=True)
+class IkLimb:
+    """The controls of a limb's own IK."""
+
+    end: str
+    """The bone at the limb's end whose place and rotation the target gives: a hand or foot."""
+    target: str
+    pole: str
+    shown: tuple[str, str, str]
+    """The limb's upper and lower bone and its end, as they are posed in the end."""
+    is_switched: bool = False
+    """Whether the rig has FK controls for the limb too; else it always needs IK."""
+
+
+@dataclass(frozen=True)
 class PickedBones:
     """The bones, parents first."""
 
@@ -34,6 +49,9 @@ class PickedBones:
     """The bone whose location moves the character, if it is none of the bones."""
     properties: dict[str, float] = field(default_factory=dict)
     """Custom properties (data paths from the object) that FK controls need, and their values."""
+    ik_properties: dict[str, dict[str, float]] = field(default_factory=dict)
+    """For the end of each limb: those that its IK controls need instead."""
+    limbs: tuple[IkLimb, ...] = ()
 
 
 def is_rigify(armature: Object) -> bool:
@@ -54,7 +72,8 @@ def picked_bones(armature: Object, *, with_mechanism: bool = False) -> PickedBon
         and (with_mechanism or not _MECHANISM.match(bone.name))
     ]
     names = {bone.name for bone in kept}
-    return PickedBones([_picked(bone, names) for bone in kept])
+    limbs = tuple(_constrained_limbs(armature, names))
+    return PickedBones([_picked(bone, names) for bone in kept], limbs=limbs)
 
 
 def _picked(bone: Bone, names: set[str]) -> Picked:
@@ -77,7 +96,10 @@ def _rigify_controls(armature: Object) -> PickedBones:
         above = (by_original.get(parent.name, "") for parent in bone.parent_recursive)
         parent = next((name for name in above if name), "")
         picked.append(Picked(by_original[original], parent, bone.head_local, bone.tail_local))
-    return PickedBones(picked, _RIGIFY_MOVER, _rigify_properties(armature))
+    limbs = tuple(_rigify_limbs(armature))
+    ik_properties = {limb.end: _rigify_ik_properties(armature, limb) for limb in limbs}
+    fk = _rigify_fk_properties(armature)
+    return PickedBones(picked, _RIGIFY_MOVER, fk, ik_properties, limbs)
 
 
 def _rigify_control(armature: Object, original: str) -> str | None:
@@ -98,12 +120,63 @@ def _rigify_control(armature: Object, original: str) -> str | None:
     return None
 
 
-def _rigify_properties(armature: Object) -> dict[str, float]:
+def _rigify_fk_properties(armature: Object) -> dict[str, float]:
     """FK limbs; a neck and head that turn with what they hang on."""
     wanted = {"IK_FK": 1.0, "FK_limb_follow": 0.0, "neck_follow": 1.0, "head_follow": 1.0}
     return {
-        f'pose.bones["{bone.name}"]["{name}"]': value
+        _property_path(bone.name, name): value
         for bone in armature.pose.bones
         for name, value in wanted.items()
         if bone.name.endswith(("_parent.L", "_parent.R", _RIGIFY_MOVER)) and name in bone
     }
+
+
+def _rigify_limbs(armature: Object) -> Iterator[IkLimb]:
+    for upper, lower, end in (("upper_arm", "forearm", "hand"), ("thigh", "shin", "foot")):
+        for side in (".L", ".R"):
+            limb = IkLimb(
+                f"{end}_fk{side}",
+                f"{end}_ik{side}",
+                f"{upper}_ik_target{side}",
+                (f"ORG-{upper}{side}", f"ORG-{lower}{side}", f"ORG-{end}{side}"),
+                is_switched=True,
+            )
+            if all(name in armature.data.bones for name in (limb.end, limb.target, limb.pole)):
+                yield limb
+
+
+def _rigify_ik_properties(armature: Object, limb: IkLimb) -> dict[str, float]:
+    """IK with a pole and no stretch; target and pole in the space of the whole character."""
+    holder = limb.pole.replace("_ik_target", "_parent")
+    wanted = {"IK_FK": 0.0, "IK_Stretch": 0.0, "pole_vector": 1, "IK_parent": 1, "pole_parent": 1}
+    bone = armature.pose.bones[holder]
+    return {_property_path(holder, name): value for name, value in wanted.items() if name in bone}
+
+
+def _constrained_limbs(armature: Object, names: set[str]) -> Iterator[IkLimb]:
+    """The limbs of any rig whose lower bone an IK constraint bends."""
+    for bone in armature.pose.bones:
+        for constraint in bone.constraints:
+            if constraint.type != "IK" or constraint.mute or constraint.influence < 1.0:
+                continue
+            if constraint.target != armature or constraint.chain_count not in (0, 2):
+                continue
+            ends = [child.name for child in bone.children if child.name in names]
+            target = _free_bone(armature, constraint.subtarget)
+            has_pole = constraint.pole_target == armature and constraint.pole_subtarget
+            pole = _free_bone(armature, constraint.pole_subtarget) if has_pole else ""
+            if ends and target and bone.parent is not None:
+                shown = (bone.parent.name, bone.name, ends[0])
+                yield IkLimb(ends[0], target, pole, shown)
+
+
+def _free_bone(armature: Object, name: str) -> str:
+    """The bone or the nearest above it that nothing but its own channels moves."""
+    bone = armature.pose.bones.get(name)
+    while bone is not None and any(not constraint.mute for constraint in bone.constraints):
+        bone = bone.parent
+    return bone.name if bone is not None else ""
+
+
+def _property_path(bone: str, name: str) -> str:
+    return f'pose.bones["{bone}"]["{name}"]'

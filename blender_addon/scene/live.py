@@ -28,10 +28,10 @@ from .armature import (
     use_quaternions,
 )
 from .axes import bone_quaternions, to_blender
-from .binding import bind
 from .pose_memory import PoseMemory
 from .rig_pose import RigPose
 from .settings import settings_of
+from .targets import bound
 
 TICK_S = 0.02
 _PANEL_S = 0.25
@@ -77,7 +77,7 @@ def follow(context: Context, skeleton: Any) -> Object:
     figure, target = None, None
     if chosen is not None and not is_ours(chosen):
         armature = editable(chosen)
-        target = bind(context, armature)
+        target = bound(context, armature)
     else:
         rig = rig_of(editable(chosen), skeleton) if chosen else _figure(context, skeleton)
         armature = rig.armature

@@ -17,6 +17,9 @@ from .action import LOCATION, set_keys
 from .axes import Floats
 from .compat import Curves, curves_for
 
+CONTACTS = ("left_foot_on_floor", "right_foot_on_floor")
+"""Custom properties of a character: 1 while the foot stands."""
+
 _CHUNK = 2000  # keys that are converted between two redraws
 
 
@@ -26,34 +29,32 @@ def rig_action_steps(name: str, armature: Object, take: RigTake, frames: Floats)
     What the armature's own action does with other bones and properties is copied. Raises
     InputError when a bone is gone; nothing is left behind then, nor when the steps are closed.
     """
-    controls = take.target.controls
-    missing = [one.name for one in controls.controls if one.name not in armature.pose.bones]
+    missing = [name for name in take.target.bones if name not in armature.pose.bones]
     if missing:
         raise InputError(f'"{armature.name}" has no bone "{missing[0]}" any more: bake again')
     action, curves = _action_for(name, armature, take)
     try:
         action.use_fake_user = True
-        for path, value in controls.properties.items():
-            curve = curves.new(path, -1, _bone_in(path))
-            set_keys(curve, frames[:1], np.array([value]), "CONSTANT")
-        for number, control in enumerate(controls.controls):
-            tracks = []
-            if number == controls.mover.control:
-                tracks.append((LOCATION, take.location))
-            if control.turned >= 0:
-                mode = armature.pose.bones[control.name].rotation_mode
-                turned = yield from part(
-                    _in_mode_steps(take.quaternions[:, number], mode),
-                    number / len(controls.controls),
-                    0.0,
-                )
-                tracks.append((_rotation_path(mode), turned))
-            for what, track in tracks:
-                path = f'pose.bones["{bpy.utils.escape_identifier(control.name)}"].{what}'
-                for index, values in enumerate(track.T):
+        for path, value in take.target.controls.properties.items():
+            set_keys(
+                curves.new(path, -1, _bone_in(path)), frames[:1], np.array([value]), "CONSTANT"
+            )
+        _set_contacts(armature, curves, take, frames)
+        for number, track in enumerate(take.tracks):
+            mode = armature.pose.bones[track.bone].rotation_mode
+            begin, share = number / len(take.tracks), 1.0 / len(take.tracks)
+            values: dict[str, Floats] = {}
+            if track.location is not None:
+                values[LOCATION] = track.location
+            if track.quaternions is not None:
+                steps = _in_mode_steps(track.quaternions, mode)
+                values[_rotation_path(mode)] = yield from part(steps, begin, 0.5 * share)
+            for what, columns in values.items():
+                path = f'pose.bones["{bpy.utils.escape_identifier(track.bone)}"].{what}'
+                for index, column in enumerate(columns.T):
                     action.name  # noqa: B018 - raises ReferenceError after an undo
-                    set_keys(curves.new(path, index, control.name), frames, values)
-                    yield (number + (index + 1) / len(track.T)) / len(controls.controls)
+                    set_keys(curves.new(path, index, track.bone), frames, column)
+                    yield begin + share * (0.5 + 0.5 * (index + 1) / len(columns.T))
     except BaseException:
         with suppress(ReferenceError):
             bpy.data.actions.remove(action)
@@ -61,14 +62,30 @@ def rig_action_steps(name: str, armature: Object, take: RigTake, frames: Floats)
     return action
 
 
+def _set_contacts(armature: Object, curves: Curves, take: RigTake, frames: Floats) -> None:
+    """Keys where a foot is put on the floor or lifted, of a custom property of the armature."""
+    for name, stands in zip(CONTACTS, take.stands.T, strict=True):
+        path = f'["{name}"]'
+        for curve in curves.all():
+            if curve.data_path == path:
+                curves.remove(curve)
+        if not stands.any():
+            continue
+        armature[name] = int(stands[0])
+        changes = np.flatnonzero(np.diff(stands.astype(int), prepend=-1))
+        values = stands[changes].astype(np.float64)
+        set_keys(curves.new(path, -1, "Contacts"), frames[changes], values, "CONSTANT")
+
+
 def _action_for(name: str, armature: Object, take: RigTake) -> tuple[Action, Curves]:
     """A new action, with the curves of the armature's own one that the take leaves alone."""
     data = armature.animation_data
     old = data.action if data is not None else None
-    controls = take.target.controls
+    properties = take.target.controls.properties
+    mapped = [control.name for control in take.target.controls.controls]
     keyed = {
-        f'pose.bones["{bpy.utils.escape_identifier(control.name)}"]'
-        for control in controls.controls
+        f'pose.bones["{bpy.utils.escape_identifier(name)}"]'
+        for name in (*take.target.bones, *mapped)
     }
     if old is not None:
         action = old.copy()
@@ -77,7 +94,7 @@ def _action_for(name: str, armature: Object, take: RigTake) -> tuple[Action, Cur
         if others:
             action.name = name
             for curve in curves.all():
-                if _is_keyed(curve.data_path, keyed) or curve.data_path in controls.properties:
+                if _is_keyed(curve.data_path, keyed) or curve.data_path in properties:
                     curves.remove(curve)
             return action, curves
         bpy.data.actions.remove(action)

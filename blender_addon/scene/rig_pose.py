@@ -8,9 +8,8 @@ from typing import Any
 from bpy.types import Object
 from mathutils import Quaternion
 
-from ..session.controls import channels
-from ..session.retarget import Target, quaternions_of
-from .binding import set_properties
+from ..session.retarget import Target, tracks_of
+from .rig_probe import set_properties
 
 
 class RigPose:
@@ -18,7 +17,7 @@ class RigPose:
 
     def __init__(self, target: Target) -> None:
         self.target = target
-        self.bones = [control.name for control in target.controls.controls]
+        self.bones = target.bones
         self._lowest_m: float | None = None  # that an ankle was, above where it stands
 
     def begin(self, armature: Object) -> None:
@@ -27,16 +26,16 @@ class RigPose:
 
     def show(self, armature: Object, motion: Any) -> None:
         """Show a motion of one frame; the lowest foot so far stands on the floor."""
-        moved = self.target.character.motion(motion)
+        character = self.target.character
+        moved = character.world(character.on_rig(motion))
         above = float(moved.above_floor_m[0])
         self._lowest_m = above if self._lowest_m is None else min(self._lowest_m, above)
-        controls = self.target.controls
-        found = channels(controls, moved.lifted(-self._lowest_m))
-        quaternions = quaternions_of(found.rotations[0])
-        for number, control in enumerate(controls.controls):
-            bone = armature.pose.bones[control.name]
-            if control.turned >= 0:
-                turned = Quaternion(quaternions[number])
+        for track in tracks_of(
+            self.target.controls, moved.lifted(self.target.floor_m - self._lowest_m)
+        ):
+            bone = armature.pose.bones[track.bone]
+            if track.quaternions is not None:
+                turned = Quaternion(track.quaternions[0])
                 if bone.rotation_mode == "QUATERNION":
                     bone.rotation_quaternion = turned
                 elif bone.rotation_mode == "AXIS_ANGLE":
@@ -44,5 +43,5 @@ class RigPose:
                     bone.rotation_axis_angle = (angle, *axis)
                 else:
                     bone.rotation_euler = turned.to_euler(bone.rotation_mode, bone.rotation_euler)
-            if number == controls.mover.control:
-                bone.location = found.location[0]
+            if track.location is not None:
+                bone.location = track.location[0]

@@ -145,6 +145,52 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
         name="Also on selected",
         description="Also put takes on the other selected armatures",
     )
+    limbs: EnumProperty(
+        name="Limbs",
+        description="Which controls of a rig that has both get the keys of arms and legs",
+        items=(
+            ("FK", "FK", "Arms and legs by their FK controls"),
+            ("LEGS", "Legs IK", "Legs by their IK controls, arms by their FK controls"),
+            ("IK", "IK", "Arms and legs by their IK controls"),
+        ),
+    )
+    floor: PointerProperty(
+        name="Floor",
+        description=(
+            "The object at whose height the feet stand. Empty: the height of the character's origin"
+        ),
+        type=Object,
+    )
+    foot_lock: FloatProperty(
+        name="Foot lock",
+        description="How far feet stay where they stand: 0 as reconstructed, 1 without any sliding",
+        default=1.0,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+    least_certainty: FloatProperty(
+        name="Certainty",
+        description="How certain a contact with the floor has to be for the foot to be locked",
+        default=0.5,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+    fastest_foot_mps: FloatProperty(
+        name="Fastest (m/s)",
+        description="A foot that is faster than this is not locked, in m/s",
+        default=0.5,
+        min=0.0,
+        max=3.0,
+    )
+    highest_foot_m: FloatProperty(
+        name="Highest (m)",
+        description="A foot that is higher above the floor than this is not locked, in m",
+        default=0.06,
+        min=0.0,
+        max=0.5,
+    )
     whole_frames: BoolProperty(
         name="Whole frames",
         description=(

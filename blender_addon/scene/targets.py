@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from bpy.types import Context, Object
 
 from ..session.bake import Placement
+from ..session.character import FootLock
 from ..session.errors import InputError
 from ..session.retarget import Target
-from .armature import editable, is_ours
+from .armature import editable, is_ours, units_per_metre
 from .binding import bind
 from .settings import settings_of
 
@@ -34,9 +37,26 @@ def placement_of(
 
     Raises InputError when a character cannot be animated.
     """
-    render = context.scene.render
-    targets = [bind(context, editable(obj)) for obj in armatures if not is_ours(obj)]
-    return Placement(start_frame, render.fps / render.fps_base, whole_frames, tuple(targets))
+    render, settings = context.scene.render, settings_of(context.scene)
+    others = [editable(obj) for obj in armatures if not is_ours(obj)]
+    targets = [bound(context, armature) for armature in others]
+    lock = FootLock(
+        settings.foot_lock,
+        settings.least_certainty,
+        settings.fastest_foot_mps,
+        settings.highest_foot_m,
+    )
+    return Placement(start_frame, render.fps / render.fps_base, whole_frames, lock, tuple(targets))
+
+
+def bound(context: Context, armature: Object) -> Target:
+    """The character with the scene's choice of limbs and floor. Raises InputError."""
+    settings = settings_of(context.scene)
+    target = bind(context, armature, settings.limbs)
+    if settings.floor is None:
+        return target
+    above = settings.floor.matrix_world.translation.z - armature.matrix_world.translation.z
+    return replace(target, floor_m=above / units_per_metre(context.scene))
 
 
 def own_figure(armatures: list[Object]) -> Object | None:

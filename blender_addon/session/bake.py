@@ -3,17 +3,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from .character import Floats
+from .character import Floats, FootLock
 from .job import Cancelled, Progress
 from .reconstruct import Performance
-from .retarget import RigTake, Target, on_scene_frames, rig_take_steps
+from .retarget import RigTake, Target, on_scene_frames, rig_take
 
-PLACING = "Placing on the character"
+PLACING = "Placing on"
 
 
 @dataclass(frozen=True)
@@ -24,6 +24,7 @@ class Placement:
     scene_rate_hz: float
     is_on_frames: bool
     """Whether keys are on whole frames of the scene; otherwise at the take's own times."""
+    lock: FootLock = field(default_factory=FootLock)
     targets: tuple[Target, ...] = ()
     """The characters; none: the add-on's own figure."""
 
@@ -51,14 +52,14 @@ class PlacedTake:
 
 def placed(performance: Performance, placement: Placement, progress: Progress) -> PlacedTake:
     """The take on the characters of the placement. Raises Cancelled."""
-    motion = performance.motion
+    motion, contacts = performance.motion, performance.contacts
     if placement.is_on_frames:
-        motion = on_scene_frames(motion, placement.scene_rate_hz)
+        motion, contacts = on_scene_frames(motion, contacts, placement.scene_rate_hz)
     takes = []
-    for target in placement.targets:
-        for done, take in rig_take_steps(target, motion):
-            if not progress(done, motion.num_frames, PLACING):
-                raise Cancelled("Cancelled")
-            if take is not None:
-                takes.append(take)
+    for number, target in enumerate(placement.targets):
+        if not progress(number, len(placement.targets), f"{PLACING} {target.armature}"):
+            raise Cancelled("Cancelled")
+        takes.append(rig_take(target, motion, contacts, placement.lock))
+    if not progress(1, 1, ""):
+        raise Cancelled("Cancelled")
     return PlacedTake(performance, placement, motion, tuple(takes))

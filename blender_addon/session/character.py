@@ -34,6 +34,20 @@ class RestBone:
 
 
 @dataclass(frozen=True)
+class FootLock:
+    """How feet are kept where they stand."""
+
+    strength: float = 1.0
+    """0: not at all, 1: wholly."""
+    least_certainty: float = 0.5
+    """Of a foot that stands, 0 to 1."""
+    fastest_mps: float = 0.5
+    """A faster foot does not stand."""
+    highest_m: float = 0.06
+    """A foot that is higher above the floor does not stand."""
+
+
+@dataclass(frozen=True)
 class RigMotion:
     """A motion on a character. T frames, n turned bones."""
 
@@ -76,14 +90,27 @@ class Character:
         still = still_motion(body)
         self._skeleton = still.skeleton
         self._mapping = core().map_skeleton(still, self.joints)
-        self.turned: list[str] = list(self._mapping.turned_joints)
+        feet = [name for name in self._mapping.ankles if name]
+        turned = list(self._mapping.turned_joints)
+        self.turned: list[str] = [*turned, *(name for name in feet if name not in turned)]
         """The bones that a motion turns."""
+        self.ends = {
+            joint: name
+            for joint, name in (
+                ("ltibia", self._mapping.ankles[0]),
+                ("rtibia", self._mapping.ankles[1]),
+                ("lradius", self.joints.get("lwrist", "")),
+                ("rradius", self.joints.get("rwrist", "")),
+            )
+            if name in self.turned
+        }
+        """The bone at the end of each shank and forearm that has one: feet and hands."""
         names = [bone.name for bone in body]
         self._parents = [bone.parent for bone in body]
         self._turned = [names.index(name) for name in self.turned]
         self._pivots = np.array([bone.head for bone in body])
         self._thighs = [names.index(self.joints[joint]) for joint in _THIGHS]
-        self._feet = [names.index(name) for name in self._mapping.ankles if name]
+        self._feet = [names.index(name) for name in feet]
         self._needed = _with_parents([*self._turned, *self._feet], self._parents)
         self._ankle_m = _ankle_height(body, self._feet)
 
@@ -97,13 +124,42 @@ class Character:
         """The bone of the pelvis."""
         return self.joints[_PELVIS]
 
-    def lift_m(self, above_floor_m: Floats) -> float:
-        """How much higher a whole take has to be for the feet to stand on the floor."""
-        return -float(np.quantile(above_floor_m, _STANDING))
+    def on_rig(self, motion: Any) -> Any:
+        """A motion on the standard skeleton on this rig (both sparse_mocap.Motion)."""
+        return self._mapping.to_rig(motion)
 
-    def motion(self, motion: Any) -> RigMotion:
-        """A motion on the standard skeleton (sparse_mocap.Motion) on this character."""
-        moved = self._mapping.to_rig(motion)
+    def standing(self, moved: Any) -> Any:
+        """A whole take on this rig at the height at which the feet stand on the floor."""
+        above = self.world(moved).above_floor_m
+        if len(above) == 0:
+            return moved
+        up = np.array([0.0, -float(np.quantile(above, _STANDING)), 0.0])
+        return core().Motion(
+            self._skeleton, moved.frame_time_s, moved.root_positions + up, moved.rotations
+        )
+
+    def with_locked_feet(
+        self, moved: Any, contacts: Floats, lock: FootLock
+    ) -> tuple[Any, NDArray[np.bool_]]:
+        """A take on this rig with feet that stay where they stand, and when they do (T, 2).
+
+        contacts (T, 2): how certain it is that the left and the right foot stand.
+        """
+        if len(self._feet) < 2 or lock.strength == 0.0:
+            return moved, np.zeros((moved.num_frames, 2), dtype=bool)
+        locked: tuple[Any, NDArray[np.bool_]] = self._mapping.lock_feet(
+            moved,
+            contacts,
+            strength=lock.strength,
+            ankle_height_m=self._ankle_m,
+            least_certainty=lock.least_certainty,
+            fastest_mps=lock.fastest_mps,
+            highest_m=lock.highest_m,
+        )
+        return locked
+
+    def world(self, moved: Any) -> RigMotion:
+        """Where a motion on this rig turns the bones."""
         local = _matrices(moved.rotations)
         world: dict[int, Floats] = {}
         positions: dict[int, Floats] = {0: np.asarray(moved.root_positions)}

@@ -7,6 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .calibrating import calibration_at
 from .core import core
 from .database import Database, databases
@@ -23,6 +26,8 @@ class Performance:
 
     name: str
     motion: Any  # sparse_mocap.Motion
+    contacts: NDArray[np.float64]
+    """(T, 2) how certain it is that the left and the right foot stand, 0 to 1."""
     duration_s: float
     match: str
     """How well the sensors match the motion database: good, fair or poor."""
@@ -86,6 +91,7 @@ def reconstruct(
     return Performance(
         name=take.name,
         motion=motion,
+        contacts=np.asarray(solved.contacts),
         duration_s=(motion.num_frames - 1) * motion.frame_time_s,
         match=sparse_mocap.report.match(solved),
         is_guess=sparse_mocap.report.is_unlike_the_database(solved),

@@ -3,16 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .character import Character, Floats
+from .character import Character, Floats, FootLock, RigMotion
 from .controls import Controls, channels
-
-_CHUNK = 500  # frames, between which a job can be cancelled
 
 
 @dataclass(frozen=True)
@@ -24,53 +22,71 @@ class Target:
     controls: Controls
     held: list[str]
     """Bones that a constraint, a driver or a lock keeps from following."""
+    floor_m: float = 0.0
+    """How high the floor is above the character's origin."""
+
+    @property
+    def bones(self) -> list[str]:
+        """The bones that get keys."""
+        keyed = [control.name for control in self.controls.controls if control.is_keyed]
+        for limb in self.controls.limbs:
+            keyed += [placed.name for placed in (limb.target, limb.pole) if placed is not None]
+        return keyed
+
+
+@dataclass(frozen=True)
+class Track:
+    """What one bone of a character is keyed with. T frames."""
+
+    bone: str
+    quaternions: Floats | None  # (T, 4) w x y z, without jumps of sign
+    location: Floats | None  # (T, 3)
 
 
 @dataclass(frozen=True)
 class RigTake:
-    """What a character's controls do in a take. T frames, n controls."""
+    """What a character's controls do in a take. T frames."""
 
     target: Target
     times_s: Floats  # (T,)
-    quaternions: Floats  # (T, n, 4) w x y z, each control's own, without jumps of sign
-    location: Floats  # (T, 3) of the control that moves the character
+    tracks: tuple[Track, ...]
+    stands: NDArray[np.bool_]  # (T, 2) when the left and the right foot stand
 
 
-def on_scene_frames(motion: Any, rate_hz: float) -> Any:
-    """The motion (sparse_mocap.Motion) with one pose for each frame of the scene."""
+def on_scene_frames(motion: Any, contacts: Floats, rate_hz: float) -> tuple[Any, Floats]:
+    """The motion (sparse_mocap.Motion) and its contacts (T, 2), one pose for each frame."""
     if motion.num_frames < 2 or abs(motion.frame_time_s * rate_hz - 1.0) < 1e-9:
-        return motion
-    return motion.resampled(rate_hz)
+        return motion, contacts
+    placed = motion.resampled(rate_hz)
+    times_s = np.arange(placed.num_frames) / rate_hz
+    known_s = np.arange(motion.num_frames) * motion.frame_time_s
+    columns = [np.interp(times_s, known_s, contacts[:, side]) for side in range(2)]
+    return placed, np.column_stack(columns)
 
 
-def rig_take_steps(target: Target, motion: Any) -> Iterator[tuple[int, RigTake | None]]:
-    """The number of frames done and, at the end, the take on the character."""
-    parts, lowest = [], []
-    for begin in range(0, motion.num_frames, _CHUNK):
-        end = min(begin + _CHUNK, motion.num_frames)
-        moved = target.character.motion(motion.trimmed(begin, end))
-        lowest.append(moved.above_floor_m)
-        parts.append(moved)
-        yield end, None
-    lift = target.character.lift_m(np.concatenate(lowest)) if lowest else 0.0
-    found = [channels(target.controls, part.lifted(lift)) for part in parts]
-    quaternions = without_jumps(
-        quaternions_of(np.concatenate([part.rotations for part in found])) if found else _NOTHING
-    )
-    location = np.concatenate([part.location for part in found]) if found else np.empty((0, 3))
+def rig_take(target: Target, motion: Any, contacts: Floats, lock: FootLock) -> RigTake:
+    """A motion on the standard skeleton (sparse_mocap.Motion) as keys of the character.
+
+    contacts (T, 2): how certain it is that the left and the right foot stand.
+    """
+    character = target.character
+    moved = character.standing(character.on_rig(motion))
+    moved, stands = character.with_locked_feet(moved, contacts, lock)
+    tracks = tracks_of(target.controls, character.world(moved).lifted(target.floor_m))
     times_s = np.arange(motion.num_frames) * motion.frame_time_s
-    yield motion.num_frames, RigTake(target, times_s, quaternions, location)
+    return RigTake(target, times_s, tuple(tracks), stands)
 
 
-_NOTHING: Floats = np.empty((0, 0, 3, 3))
-
-
-def rig_take(target: Target, motion: Any) -> RigTake:
-    """As rig_take_steps, without steps."""
-    for _, take in rig_take_steps(target, motion):
-        if take is not None:
-            return take
-    raise AssertionError("the steps end with a take")
+def tracks_of(controls: Controls, motion: RigMotion) -> list[Track]:
+    """What the controls' bones are keyed with."""
+    return [
+        Track(
+            found.name,
+            None if found.rotations is None else without_jumps(quaternions_of(found.rotations)),
+            found.location,
+        )
+        for found in channels(controls, motion)
+    ]
 
 
 def quaternions_of(matrices: Floats) -> Floats:
@@ -94,10 +110,10 @@ def quaternions_of(matrices: Floats) -> Floats:
 
 
 def without_jumps(quaternions: Floats) -> Floats:
-    """(T, n, 4) the same rotations; signs never jump, and the first w is not negative."""
+    """(T, 4) the same rotations; signs never jump, and the first w is not negative."""
     if len(quaternions) == 0:
         return quaternions
-    products = np.einsum("tni,tni->tn", quaternions[1:], quaternions[:-1])
-    jumps = np.where(products < 0.0, -1.0, 1.0)
-    first = np.where(quaternions[:1, :, 0] < 0.0, -1.0, 1.0)
-    return quaternions * np.cumprod(np.concatenate([first, jumps]), axis=0)[..., None]
+    products = np.einsum("ti,ti->t", quaternions[1:], quaternions[:-1])
+    first = -1.0 if quaternions[0, 0] < 0.0 else 1.0
+    signs = first * np.cumprod(np.concatenate([[1.0], np.where(products < 0.0, -1.0, 1.0)]))
+    return quaternions * signs[:, None]

@@ -41,6 +41,9 @@ class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
         layout.separator()
         character(layout, context)
         layout.prop(settings, "start_frame")
+        if settings.target is not None and not is_ours(settings.target):
+            layout.prop(settings, "limbs")
+            layout.prop(settings, "foot_lock")
         column = layout.column(heading="Keys")
         column.prop(settings, "whole_frames")
         column.prop(settings, "extend_scene")
@@ -67,6 +70,33 @@ def character(layout: UILayout, context: Context) -> None:
     others = [obj for obj in context.selected_objects if obj.type == "ARMATURE"]
     if settings.to_selected or any(obj != settings.target for obj in others):
         layout.prop(settings, "to_selected")
+
+
+class SPARSEMOCAP_PT_foot_lock(StepPanel, Panel):
+    """When a foot is locked."""
+
+    bl_idname = "SPARSEMOCAP_PT_foot_lock"
+    bl_label = "Foot Lock"
+    bl_parent_id = "SPARSEMOCAP_PT_reconstruct"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Context) -> bool:
+        """Only for a character of the animator's own."""
+        target = settings_of(context.scene).target
+        return target is not None and not is_ours(target)
+
+    def draw(self, context: Context) -> None:
+        """The floor and the thresholds."""
+        settings = settings_of(context.scene)
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.active = settings.foot_lock > 0.0
+        layout.prop(settings, "floor")
+        layout.prop(settings, "least_certainty")
+        layout.prop(settings, "fastest_foot_mps")
+        layout.prop(settings, "highest_foot_m")
 
 
 class SPARSEMOCAP_PT_options(StepPanel, Panel):
@@ -120,4 +150,4 @@ def _performed(layout: UILayout, context: Context) -> None:
             )
 
 
-CLASSES = (SPARSEMOCAP_PT_reconstruct, SPARSEMOCAP_PT_options)
+CLASSES = (SPARSEMOCAP_PT_reconstruct, SPARSEMOCAP_PT_foot_lock, SPARSEMOCAP_PT_options)

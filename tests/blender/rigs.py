@@ -117,11 +117,14 @@ def standard_skeleton():
     return sparse_mocap.MotionDatabase(library().database).skeleton
 
 
-def standard_motion():
-    """A walk on the standard skeleton of the tests' database."""
+def standard_motion_of_take():
+    """The walk that the tests' take was simulated from, on the skeleton of their database."""
     import sparse_mocap
+    from sparse_mocap_demo.generator import generate_library
 
-    motion = sparse_mocap.read_motion(sorted(library().motions.iterdir())[0])[0]
+    with tempfile.TemporaryDirectory() as folder:
+        walk = generate_library(Path(folder))[1]
+        motion = sparse_mocap.read_motion(walk)[0]
     return sparse_mocap.to_standard(motion, standard_skeleton())[0]
 
 

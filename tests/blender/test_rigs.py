@@ -6,7 +6,8 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import rigs
-from support import addon, choose_files, error_of, expected_performance, reconstruct, settings
+from rig_baking import bake, limbs_of, points_of, solved, worst_mean_degrees
+from support import addon, choose_files, error_of, reconstruct, settings
 
 _MEAN_DEG, _WORST_M = 1.0, 0.005
 _FK_RIGIFY = {
@@ -21,53 +22,12 @@ _FK_RIGIFY = {
 }
 
 
-def _bake(armature, **options):
-    choose_files()
-    settings().target = armature
-    assert reconstruct(**options) == armature
-    return armature.animation_data.action
-
-
-def _limbs(style: str) -> dict[str, tuple[str, str]]:
-    after = {"thigh": "shank", "shank": "foot", "upper_arm": "forearm", "forearm": "hand"}
-    named = rigs.STYLES[style]
-    return {
-        joint: (named.name(part, side), named.name(after[part], side))
-        for joint, (part, side) in rigs.LIMBS.items()
-    }
-
-
-def _solved():
-    """What the solver made of the take, at the scene's rate."""
-    scene = bpy.context.scene
-    return expected_performance().motion.resampled(scene.render.fps / scene.render.fps_base)
-
-
-def _worst_mean_degrees(armature, limbs, turn=None) -> float:
-    motion = _solved()
-    frames = range(1, 1 + motion.num_frames)
-    wanted, found = rigs.wanted_directions(motion), rigs.limb_directions(armature, frames, limbs)
-    turn = np.eye(3) if turn is None else turn
-    return max(rigs.degrees(wanted[j] @ turn.T, found[j]).mean() for j in limbs)
-
-
-def _points(armature, frames, bones) -> np.ndarray:
-    """(T, n, 3) the bones' heads in the world."""
-    points = []
-    for frame in frames:
-        bpy.context.scene.frame_set(frame)
-        evaluated = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
-        heads = [evaluated.pose.bones[name].head for name in bones]
-        points.append([evaluated.matrix_world @ head for head in heads])
-    return np.array(points)
-
-
 def _worst_distance_m(armature, style: str) -> float:
     """Of wrists, ankles and head from the middle of the hips."""
-    motion, named = _solved(), rigs.STYLES[style]
+    motion, named = solved(), rigs.STYLES[style]
     joints = list(motion.skeleton.names)
     bones = [named.name(part, side) for part in ("hand", "foot", "thigh") for side in "LR"]
-    points = _points(armature, range(1, 1 + motion.num_frames), [*bones, named.name("head")])
+    points = points_of(armature, range(1, 1 + motion.num_frames), [*bones, named.name("head")])
     pivots = rigs.in_blenders_axes(motion.pivot_positions())
     ends = rigs.in_blenders_axes(motion.joint_positions("world"))
     of = {name: number for number, name in enumerate(joints)}
@@ -84,8 +44,8 @@ def test_limbs_point_where_the_solvers_do_on_every_programs_names():
         for pose in ("t", "a"):
             root = "root" if style == "unreal" else ""
             armature = rigs.named_rig(style, pose=pose, rolls=pose == "a", root=root)
-            _bake(armature)
-            degrees = _worst_mean_degrees(armature, _limbs(style))
+            bake(armature)
+            degrees = worst_mean_degrees(armature, limbs_of(style))
             metres = _worst_distance_m(armature, style)
             print(f"{style}, {pose}-pose: {degrees:.2f} degrees, {1e3 * metres:.1f} mm")
             assert degrees <= _MEAN_DEG
@@ -94,14 +54,14 @@ def test_limbs_point_where_the_solvers_do_on_every_programs_names():
 
 def test_limbs_point_where_the_solvers_do_on_rigify():
     metarig = rigs.rigify_rig(generated=False)
-    _bake(metarig)
+    bake(metarig)
     plain = {j: tuple(n.removeprefix("DEF-") for n in names) for j, names in _FK_RIGIFY.items()}
-    degrees = _worst_mean_degrees(metarig, plain)
+    degrees = worst_mean_degrees(metarig, plain)
     print(f"metarig: {degrees:.2f} degrees")
     assert degrees <= _MEAN_DEG
     generated = rigs.rigify_rig()
-    _bake(generated)
-    degrees = _worst_mean_degrees(generated, _FK_RIGIFY)
+    bake(generated)
+    degrees = worst_mean_degrees(generated, _FK_RIGIFY)
     print(f"generated, FK: {degrees:.2f} degrees")
     assert degrees <= _MEAN_DEG
 
@@ -114,13 +74,13 @@ def test_scaled_rotated_and_parented_characters_move_in_metres():
         parent.location, parent.rotation_euler.z = (3.0, -2.0, 0.0), np.radians(90.0)
         armature.parent = parent
         bpy.context.view_layer.update()
-        _bake(armature)
+        bake(armature)
         turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-        assert _worst_mean_degrees(armature, _limbs("mixamo"), turn) <= _MEAN_DEG
-        motion = _solved()
+        assert worst_mean_degrees(armature, limbs_of("mixamo"), turn) <= _MEAN_DEG
+        motion = solved()
         frames = [1, motion.num_frames]
         thighs = [rigs.STYLES["mixamo"].name("thigh", side) for side in "LR"]
-        begin, end = _points(armature, frames, thighs).mean(axis=1)
+        begin, end = points_of(armature, frames, thighs).mean(axis=1)
         joints = list(motion.skeleton.names)
         both = [joints.index("lfemur"), joints.index("rfemur")]
         wanted = rigs.in_blenders_axes(motion.pivot_positions())[:, both].mean(axis=1)
@@ -137,17 +97,17 @@ def test_an_armature_with_y_up_turned_upright_by_its_object():
     bpy.ops.object.mode_set(mode="OBJECT")
     armature.rotation_euler.x = np.radians(90.0)
     bpy.context.view_layer.update()
-    _bake(armature)
-    assert _worst_mean_degrees(armature, _limbs("motionbuilder")) <= _MEAN_DEG
+    bake(armature)
+    assert worst_mean_degrees(armature, limbs_of("motionbuilder")) <= _MEAN_DEG
     assert _worst_distance_m(armature, "motionbuilder") <= _WORST_M
 
 
 def test_each_bone_keeps_its_rotation_mode_and_angles_do_not_jump():
     for mode in ("XYZ", "ZXY", "AXIS_ANGLE"):
         armature = rigs.named_rig("vrm", rolls=True, rotation_mode=mode)
-        action = _bake(armature)
+        action = bake(armature)
         assert {bone.rotation_mode for bone in armature.pose.bones} == {mode}
-        assert _worst_mean_degrees(armature, _limbs("vrm")) <= _MEAN_DEG
+        assert worst_mean_degrees(armature, limbs_of("vrm")) <= _MEAN_DEG
         curves = addon("scene.compat").curves_of(action)
         wanted = "rotation_axis_angle" if mode == "AXIS_ANGLE" else "rotation_euler"
         turning = [curve for curve in curves if "rotation" in curve.data_path]
@@ -166,8 +126,8 @@ def test_other_proportions_scale_the_way_and_keep_the_feet_on_the_floor():
     for armature in (small, large):
         rest = np.mean([armature.data.bones[name].head_local.z for name in foot])
         sole = armature.data.bones[rigs.STYLES["unreal"].name("toe", "L")].tail_local.z
-        _bake(armature)
-        points = _points(armature, range(1, 1 + _solved().num_frames), foot)
+        bake(armature)
+        points = points_of(armature, range(1, 1 + solved().num_frames), foot)
         lows.append(np.quantile(points[..., 2].min(axis=1), 0.05) - (rest - sole))
         ways.append(np.linalg.norm((points[-1] - points[0]).mean(axis=0)))
     assert np.abs(lows).max() < 0.005
@@ -183,7 +143,7 @@ def test_only_mapped_bones_are_keyed_and_the_fingers_animation_is_kept():
         finger.keyframe_insert("rotation_euler", frame=frame)
     bones = {bone.name: [c.type for c in bone.constraints] for bone in armature.pose.bones}
     old = armature.animation_data.action
-    action = _bake(armature)
+    action = bake(armature)
     assert action != old
     assert old.name in bpy.data.actions
     bpy.context.scene.frame_set(20)
@@ -192,19 +152,19 @@ def test_only_mapped_bones_are_keyed_and_the_fingers_animation_is_kept():
     assert any("f_index.01.L" in path for path in paths)
     assert not any("DEF-" in path or "MCH-" in path or "f_ring" in path for path in paths)
     assert bones == {bone.name: [c.type for c in bone.constraints] for bone in armature.pose.bones}
-    again = _bake(armature)
+    again = bake(armature)
     assert any("f_index.01.L" in c.data_path for c in addon("scene.compat").curves_of(again))
 
 
 def test_several_characters_at_once():
     first, second = rigs.named_rig("mixamo"), rigs.named_rig("vrm", size=0.8)
     choose_files()
-    settings().target, settings().to_selected = first, True
+    settings().target, settings().to_selected, settings().foot_lock = first, True, 0.0
     second.select_set(True)
     reconstruct()
     assert first.animation_data.action != second.animation_data.action
-    assert _worst_mean_degrees(first, _limbs("mixamo")) <= _MEAN_DEG
-    assert _worst_mean_degrees(second, _limbs("vrm")) <= _MEAN_DEG
+    assert worst_mean_degrees(first, limbs_of("mixamo")) <= _MEAN_DEG
+    assert worst_mean_degrees(second, limbs_of("vrm")) <= _MEAN_DEG
     assert not any("sparse_mocap" in armature for armature in bpy.data.armatures)
 
 
@@ -212,14 +172,14 @@ def test_keys_lie_on_whole_frames_and_the_scene_ends_with_the_take():
     armature = rigs.named_rig("mixamo")
     scene = bpy.context.scene
     scene.render.fps, scene.frame_end = 30, 10
-    action = _bake(armature, extend_scene=True)
+    action = bake(armature, extend_scene=True)
     curve = addon("scene.compat").curves_of(action)[0]
     frames = np.array([key.co.x for key in curve.keyframe_points])
-    assert np.array_equal(frames, 1.0 + np.arange(_solved().num_frames))
+    assert np.array_equal(frames, 1.0 + np.arange(solved().num_frames))
     assert scene.frame_end == frames[-1]
     assert scene.render.fps == 30
     scene.frame_end = 10
-    action = _bake(armature, whole_frames=False)
+    action = bake(armature, whole_frames=False)
     curve = addon("scene.compat").curves_of(action)[0]
     assert abs(curve.keyframe_points[1].co.x - (1.0 + 30.0 / 25.0)) < 1e-4
     assert scene.frame_end == 10

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Finds how the bones of a rig move by posing it, so that any rig can be asked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+from bpy.types import Constraint, Context, Object
+from mathutils import Matrix, Quaternion, Vector
+
+from .axes import Floats
+from .control_bones import IkLimb
+
+_POSES = 3  # that are tried
+_LARGEST_TURN = 0.6  # rad
+_SAME = 1e-3
+
+
+@dataclass(frozen=True)
+class Found:
+    """How the frame of a bone moves, in which its own channels count."""
+
+    follows: int | None
+    """Which of the bones asked for it moves with; -1: none; None: no single one."""
+    T_armature_rest: Floats  # (4, 4) the bone at rest
+    T_armature_followed: Floats  # (4, 4) the bone that it moves with, at rest
+    T_followed_frame: Floats  # (4, 4)
+
+    @property
+    def is_following(self) -> bool:
+        """Whether it moves with one of the bones."""
+        return self.follows is not None and self.follows >= 0
+
+
+@dataclass(frozen=True)
+class _Try:
+    """Where bones and frames were in one pose: (4, 4) each."""
+
+    poses: list[Floats]
+    frames: list[Floats]
+
+
+class Probe:
+    """Poses an armature; whoever uses it keeps the pose."""
+
+    def __init__(self, context: Context, armature: Object) -> None:
+        self._context = context
+        self._armature = armature
+
+    @contextmanager
+    def at_rest(self, properties: dict[str, float], free: Iterable[str] = ()) -> Iterator[None]:
+        """All bones at rest and custom properties set, for a while; free: without constraints."""
+        for bone in self._armature.pose.bones:
+            bone.matrix_basis = Matrix()
+        set_properties(self._armature, properties)
+        muted = list(self._constraints(free))
+        for constraint in muted:
+            constraint.mute = True
+        try:
+            self._update()
+            yield
+        finally:
+            for constraint in muted:
+                constraint.mute = False
+
+    def found(self, followed: list[str], names: list[str]) -> list[Found]:
+        """How the frames of the named bones move with those that may be followed."""
+        tries = list(self._tries(followed, names))
+        return [self._one_found(number, name, followed, tries) for number, name in enumerate(names)]
+
+    def response(self, name: str) -> Floats:
+        """(3, 3) how the bone moves in the armature with its location's three numbers."""
+        bone = self._armature.pose.bones[name]
+        step = self._armature.data.bones[name].length
+        columns = []
+        self._update()
+        rest = np.array(bone.matrix.translation)
+        for axis in range(3):
+            bone.location = [step if axis == other else 0.0 for other in range(3)]
+            self._update()
+            columns.append((np.array(bone.matrix.translation) - rest) / step)
+        bone.location = (0.0, 0.0, 0.0)
+        self._update()
+        return np.array(columns).T
+
+    def _tries(self, followed: list[str], names: list[str]) -> Iterator[_Try]:
+        """The rest pose, then poses in which each bone that may be followed is turned."""
+        random = np.random.default_rng(1)
+        pose = self._armature.pose
+        for number in range(_POSES + 1):
+            for name in followed:
+                axis, angle = random.normal(size=3), random.uniform(0.2, _LARGEST_TURN)
+                if number > 0:
+                    turned = Quaternion(Vector(axis), angle).to_matrix().to_4x4()
+                    pose.bones[name].matrix_basis = turned
+            self._update()
+            frames = [pose.bones[name] for name in names]
+            yield _Try(
+                [unscaled(np.array(pose.bones[name].matrix)) for name in followed],
+                [unscaled(np.array(one.matrix @ one.matrix_basis.inverted())) for one in frames],
+            )
+        for name in followed:
+            pose.bones[name].matrix_basis = Matrix()
+        self._update()
+
+    def _one_found(self, number: int, name: str, followed: list[str], tries: list[_Try]) -> Found:
+        frames = [one.frames[number] for one in tries]
+        errors = {-1: _change(frames)}
+        for other, candidate in enumerate(followed):
+            if candidate != name:
+                poses = [one.poses[other] for one in tries]
+                relative = [np.linalg.inv(a) @ b for a, b in zip(poses, frames, strict=True)]
+                errors[other] = _change(relative)
+        best = min(errors, key=lambda other: errors[other])
+        is_single = errors[best] < _SAME
+        at_rest = np.array(self._armature.data.bones[name].matrix_local)
+        T_followed = tries[0].poses[best] if is_single and best >= 0 else np.eye(4)
+        return Found(
+            best if is_single else None,
+            at_rest,
+            T_followed,
+            unscaled(np.linalg.inv(T_followed) @ frames[0]),
+        )
+
+    def pole_angle_rad(self, limb: IkLimb) -> float:
+        """How far the limb's plane is turned from its pole, about the line to the limb's end.
+
+        Blender aims an axis of the upper bone at the pole, not the bone below it.
+        """
+        pose = self._armature.pose
+        upper, lower, end = (pose.bones[name] for name in limb.shown)
+        target, pole = pose.bones[limb.target], pose.bones[limb.pole]
+        nearer = 0.25 * (upper.head - end.head)
+        response = Matrix(self.response(limb.target).tolist())
+        target.location = response.inverted() @ nearer
+        self._update()
+        along = (end.head - upper.head).normalized()
+        middle = lower.head - upper.head
+        aim = pole.head - upper.head
+        middle, aim = middle - along * along.dot(middle), aim - along * along.dot(aim)
+        target.location = (0.0, 0.0, 0.0)
+        angle = math.atan2(aim.cross(middle).dot(along), aim.dot(middle))
+        self._update()
+        return angle
+
+    def _constraints(self, bones: Iterable[str]) -> Iterator[Constraint]:
+        for name in bones:
+            for constraint in self._armature.pose.bones[name].constraints:
+                if not constraint.mute:
+                    yield constraint
+
+    def _update(self) -> None:
+        self._context.view_layer.update()
+
+
+def set_properties(armature: Object, properties: dict[str, float]) -> None:
+    """Set custom properties of bones, as data paths from the object."""
+    for path, value in properties.items():
+        holder, _, name = path.rpartition("[")
+        bone = armature.path_resolve(holder)
+        key = name.strip('"]')
+        bone[key] = type(bone[key])(value)
+    armature.update_tag()
+
+
+def rotation_of(matrix: Floats) -> Floats:
+    """(3, 3) the rotation of a (4, 4) matrix, without scale."""
+    turned = matrix[:3, :3]
+    return np.asarray(turned / np.linalg.norm(turned, axis=0))
+
+
+def unscaled(matrix: Floats) -> Floats:
+    """The matrix (4, 4) without scale."""
+    plain = matrix.copy()
+    plain[:3, :3] = rotation_of(matrix)
+    return plain
+
+
+def _change(matrices: list[Floats]) -> float:
+    """How far the rotations are from being one."""
+    first = matrices[0][:3, :3]
+    return max(float(np.abs(matrix[:3, :3] - first).max()) for matrix in matrices)
