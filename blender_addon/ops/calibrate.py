@@ -37,8 +37,9 @@ class SPARSEMOCAP_OT_calibrate_sensors(JobOperator, Operator):
 
     def prepare(self, context: Context) -> Job:
         """Guide the performer."""
-        height_m = settings_of(context.scene).height_m
-        return calibrating_job(connected(), takes_folder(bpy.data.filepath), height_m)
+        settings = settings_of(context.scene)
+        folder = takes_folder(bpy.data.filepath, settings.folder)
+        return calibrating_job(connected(), folder, settings.height_m)
 
     def apply(self, context: Context, result: Calibrated) -> Steps[str]:
         """Use the calibration from now on, in a running live preview too."""

@@ -14,6 +14,7 @@ from ..scene import live as live_scene
 from ..scene.armature import is_ours
 from ..scene.performance import extend_scene, perform_steps
 from ..scene.settings import scene_choice, settings_of
+from ..scene.takes import add_take
 from ..scene.targets import chosen_armatures, own_figure, placement_of
 from ..session import live, sensors
 from ..session.database import Database
@@ -25,6 +26,7 @@ from ..session.port_scanner import port_scanner
 from ..session.sensors import SavedTake
 from ..session.stage import Stage
 from ..session.steps import Steps
+from ..session.take import takes
 from .job_operator import JobOperator
 
 _ANSWER_S = 1.0
@@ -85,7 +87,7 @@ class SPARSEMOCAP_OT_connect_sensors(_NowOperator, Operator):
         port = sensors.Port(
             settings.port, settings.driver, settings.baud, settings.driver_options, settings.sites
         )
-        live.begin(sensors.new_session(port, takes_folder(bpy.data.filepath)))
+        live.begin(sensors.new_session(port, takes_folder(bpy.data.filepath, settings.folder)))
         live_scene.ensure_ticking()
         return ""
 
@@ -238,14 +240,15 @@ class SPARSEMOCAP_OT_stop_take(JobOperator, Operator):
             session,
             bpy.path.abspath(settings.database),
             bpy.path.abspath(settings.calibration),
-            takes_folder(bpy.data.filepath),
+            takes_folder(bpy.data.filepath, settings.folder),
             scene_choice(context.scene),
             placement,
         )
 
     def apply(self, context: Context, result: SavedTake) -> Steps[str]:
         """Select the take, and put its action on the armature of the live preview, if any."""
-        settings_of(context.scene).take = result.path
+        match = result.placed.performance.match if result.placed is not None else ""
+        add_take(context.scene, result.path, takes.peek(result.path).value, match)
         for warning in result.warnings:
             self.report({"WARNING"}, warning)
         if result.placed is None:

@@ -10,6 +10,7 @@ from bpy.types import Context, Event, Operator
 from ..scene.armature import reusable_armature
 from ..scene.performance import extend_scene, perform_steps
 from ..scene.settings import options_text, settings_of
+from ..scene.takes import take_of
 from ..scene.targets import chosen_armatures, held_warning, own_figure, placement_of
 from ..session.bake import PlacedTake, placed
 from ..session.job import Job
@@ -93,6 +94,9 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
         )
         if self.extend_scene:
             extend_scene(context, result)
+        row = take_of(context.scene)
+        if row is not None:
+            row.match = performance.match
         action = armature.animation_data.action
         return (
             f'"{action.name}" on "{armature.name}": {performance.duration_s:.1f} s, '

@@ -16,6 +16,7 @@ from ..session.imported import file_summaries
 from ..session.port_scanner import port_scanner
 from ..session.take import takes
 from . import (
+    bake,
     calibrate,
     character,
     clips,
@@ -39,6 +40,7 @@ CLASSES = (
     *live.CLASSES,
     *calibrate.CLASSES,
     *character.CLASSES,
+    *bake.CLASSES,
 )
 
 

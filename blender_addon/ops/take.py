@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Step 2: choose a recorded take."""
 
+from pathlib import Path
+
 import bpy
 from bpy.props import StringProperty
 from bpy.types import Context, Event, Operator
 
 from ..scene.settings import settings_of
+from ..scene.takes import add_take, find_takes, remove_take
 from ..session.errors import one_line
+from ..session.new_files import takes_folder
 from ..session.take import SUFFIX, takes
 
 
@@ -33,11 +37,51 @@ class SPARSEMOCAP_OT_load_take(Operator):
         except Exception as error:
             self.report({"ERROR"}, one_line(error))
             return {"CANCELLED"}
-        settings_of(context.scene).take = self.filepath
+        add_take(context.scene, self.filepath, take)
         self.report(
             {"INFO"}, f"Loaded a take of {len(take.sensors)} sensors, {take.duration_s:.1f} s"
         )
         return {"FINISHED"}
 
 
-CLASSES = (SPARSEMOCAP_OT_load_take,)
+class SPARSEMOCAP_OT_find_takes(Operator):
+    """Add the takes in the folder of takes, and find missing ones there."""
+
+    bl_idname = "sparse_mocap.find_takes"
+    bl_label = "Find Takes"
+    bl_description = "List all takes in the folder of takes, and find missing ones there"
+    bl_options = {"REGISTER", "UNDO"}
+
+    directory: StringProperty(name="Folder", subtype="DIR_PATH", options={"SKIP_SAVE"})
+
+    def execute(self, context: Context) -> set[str]:
+        """Look into the folder."""
+        folder = takes_folder(bpy.data.filepath, settings_of(context.scene).folder)
+        if self.directory:
+            folder = Path(bpy.path.abspath(self.directory))
+        added = find_takes(context.scene, folder)
+        self.report({"INFO"}, f"{added} more takes in {folder}")
+        return {"FINISHED"}
+
+
+class SPARSEMOCAP_OT_remove_take(Operator):
+    """Remove the take from the list; its file stays."""
+
+    bl_idname = "sparse_mocap.remove_take"
+    bl_label = "Remove Take"
+    bl_description = "Remove the take from the list. Its file stays"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: Context) -> bool:
+        """Only with a take in the list."""
+        settings = settings_of(context.scene)
+        return 0 <= settings.take_index < len(settings.takes)
+
+    def execute(self, context: Context) -> set[str]:
+        """Remove its row."""
+        self.report({"INFO"}, f'"{remove_take(context.scene)}" is not listed any more')
+        return {"FINISHED"}
+
+
+CLASSES = (SPARSEMOCAP_OT_load_take, SPARSEMOCAP_OT_find_takes, SPARSEMOCAP_OT_remove_take)

@@ -4,8 +4,9 @@
 
 def register() -> None:
     """Register the settings."""
-    from . import clips, mapping, settings
+    from . import clips, mapping, preferences, settings
 
+    preferences.register()
     settings.register()
     clips.register()
     mapping.register()
@@ -13,8 +14,9 @@ def register() -> None:
 
 def unregister() -> None:
     """Unregister the settings."""
-    from . import clips, mapping, settings
+    from . import clips, mapping, preferences, settings
 
     mapping.unregister()
     clips.unregister()
     settings.unregister()
+    preferences.unregister()

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
 import bpy
@@ -12,12 +13,13 @@ import numpy as np
 from bpy.types import Action, FCurve, Keyframe, Scene
 from numpy.typing import NDArray
 
+from ..session.key_reduction import kept_keys, quaternion_distance
 from ..session.steps import finished
 from .armature import Rig, rest_orientation
 from .axes import bone_quaternions, continuous, to_blender
 from .compat import new_curve_of
 
-LOCATION, ROTATION = "location", "rotation_quaternion"
+LOCATION, ROTATION, EULER = "location", "rotation_quaternion", "rotation_euler"
 
 
 def frames_of(
@@ -27,8 +29,32 @@ def frames_of(
     return start_frame + times_s * (scene.render.fps / scene.render.fps_base)
 
 
+@dataclass(frozen=True)
+class Reduction:
+    """How far bones may be off where keys are left out."""
+
+    degrees: float
+    distance: float  # in the armature's units
+
+    def kept(
+        self, what: str, frames: NDArray[np.float64], track: NDArray[np.float64]
+    ) -> NDArray[np.intp]:
+        """The keys of a track (T, n) that stay; what: the channel's name."""
+        if what == LOCATION:
+            return kept_keys(frames, track, self.distance)
+        if what == ROTATION:
+            return kept_keys(frames, track, quaternion_distance(self.degrees))
+        if what == EULER:  # three turns one after another
+            return kept_keys(frames, track, np.radians(self.degrees) / np.sqrt(3.0))
+        return np.arange(len(frames))
+
+
 def action_steps(
-    name: str, rig: Rig, motion: Any, frames: NDArray[np.float64]
+    name: str,
+    rig: Rig,
+    motion: Any,
+    frames: NDArray[np.float64],
+    reduction: Reduction | None = None,
 ) -> Generator[float, None, Action]:
     """A new action with the motion as keys for the rig, made step by step.
 
@@ -55,9 +81,10 @@ def action_steps(
                 tracks = {LOCATION: (moved - origin) @ rest[joint], ROTATION: turned}
             yield joint / len(rig.bones)
             for what, track in tracks.items():
+                kept = slice(None) if reduction is None else reduction.kept(what, frames, track)
                 for index, values in enumerate(track.T):
                     action.name  # noqa: B018 - raises ReferenceError after an undo
-                    set_keys(new_curve(path + what, index, bone), frames, values)
+                    set_keys(new_curve(path + what, index, bone), frames[kept], values[kept])
                     yield (joint + (index + 1) / len(track.T)) / len(rig.bones)
     except BaseException:
         with suppress(ReferenceError):

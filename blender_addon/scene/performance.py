@@ -13,7 +13,7 @@ from ..session.bake import PlacedTake
 from ..session.errors import InputError
 from ..session.retarget import RigTake
 from ..session.steps import Steps, part
-from .action import action_steps
+from .action import Reduction, action_steps
 from .armature import (
     editable,
     new_armature,
@@ -37,6 +37,8 @@ class Facts:
     duration_s: float
     match: str
     is_guess: bool
+    take: str
+    """The name of its take."""
 
 
 def perform_steps(context: Context, take: PlacedTake, figure: Object | None) -> Steps[Object]:
@@ -54,7 +56,8 @@ def perform_steps(context: Context, take: PlacedTake, figure: Object | None) -> 
             for number, rig_take in enumerate(take.rig_takes):
                 armature = editable(_armature(rig_take.target.armature))
                 name = _action_name(take, rig_take)
-                steps = rig_action_steps(name, armature, rig_take, take.frames)
+                reduction = _reduction(take, rig_take.target.controls.units_per_metre)
+                steps = rig_action_steps(name, armature, rig_take, take.frames, reduction)
                 made.append((armature.name, (yield from part(steps, number * share, share))))
             if num_parts > len(take.rig_takes):
                 if figure_name:
@@ -62,7 +65,9 @@ def perform_steps(context: Context, take: PlacedTake, figure: Object | None) -> 
                 else:
                     rig = new_armature(context, take.motion.skeleton)
                     new_figure = rig.armature
-                steps = action_steps(take.performance.name, rig, take.motion, take.frames)
+                reduction = _reduction(take, rig.units_per_metre)
+                name = take.performance.name
+                steps = action_steps(name, rig, take.motion, take.frames, reduction)
                 made.append((rig.armature.name, (yield from part(steps, 1.0 - share, share))))
                 use_quaternions(rig.armature)
         except BaseException:
@@ -73,14 +78,36 @@ def perform_steps(context: Context, take: PlacedTake, figure: Object | None) -> 
     return _assign(context, take, made)
 
 
+def _reduction(take: PlacedTake, units_per_metre: float) -> Reduction | None:
+    errors = take.placement.largest_errors
+    return Reduction(errors[0], 0.01 * errors[1] * units_per_metre) if errors is not None else None
+
+
 def _assign(context: Context, take: PlacedTake, made: list[tuple[str, Action]]) -> Object:
-    facts = Facts(take.performance.duration_s, take.performance.match, take.performance.is_guess)
+    facts = Facts(
+        take.performance.duration_s,
+        take.performance.match,
+        take.performance.is_guess,
+        take.performance.name,
+    )
     for name, action in made:
         action[_FACTS] = asdict(facts)
         armature = bpy.data.objects[name]
         assign_action(armature, action)
     select_only(context, armature)
     return armature
+
+
+def replace_actions(names: dict[str, str]) -> None:
+    """Let the characters' new actions have the names of those that they had, which are removed.
+
+    names: by armature, of actions that this add-on made.
+    """
+    for armature, name in names.items():
+        old, new = bpy.data.actions.get(name), performed_action(bpy.data.objects.get(armature))
+        if old is not None and new is not None and new != old and facts_of(old) is not None:
+            bpy.data.actions.remove(old)
+            new.name = name
 
 
 def extend_scene(context: Context, take: PlacedTake) -> None:

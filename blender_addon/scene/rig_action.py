@@ -13,7 +13,7 @@ from mathutils import Euler, Quaternion
 from ..session.errors import InputError
 from ..session.retarget import RigTake
 from ..session.steps import Steps, part
-from .action import LOCATION, set_keys
+from .action import EULER, LOCATION, ROTATION, Reduction, set_keys
 from .axes import Floats
 from .compat import Curves, curves_for
 
@@ -23,7 +23,13 @@ CONTACTS = ("left_foot_on_floor", "right_foot_on_floor")
 _CHUNK = 2000  # keys that are converted between two redraws
 
 
-def rig_action_steps(name: str, armature: Object, take: RigTake, frames: Floats) -> Steps[Action]:
+def rig_action_steps(
+    name: str,
+    armature: Object,
+    take: RigTake,
+    frames: Floats,
+    reduction: Reduction | None = None,
+) -> Steps[Action]:
     """A new action for the armature, made step by step; yields the fraction done.
 
     What the armature's own action does with other bones and properties is copied. Raises
@@ -51,9 +57,10 @@ def rig_action_steps(name: str, armature: Object, take: RigTake, frames: Floats)
                 values[_rotation_path(mode)] = yield from part(steps, begin, 0.5 * share)
             for what, columns in values.items():
                 path = f'pose.bones["{bpy.utils.escape_identifier(track.bone)}"].{what}'
+                kept = slice(None) if reduction is None else reduction.kept(what, frames, columns)
                 for index, column in enumerate(columns.T):
                     action.name  # noqa: B018 - raises ReferenceError after an undo
-                    set_keys(curves.new(path, index, track.bone), frames, column)
+                    set_keys(curves.new(path, index, track.bone), frames[kept], column[kept])
                     yield begin + share * (0.5 + 0.5 * (index + 1) / len(columns.T))
     except BaseException:
         with suppress(ReferenceError):
@@ -113,9 +120,7 @@ def _bone_in(path: str) -> str:
 
 
 def _rotation_path(mode: str) -> str:
-    return {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}.get(
-        mode, "rotation_euler"
-    )
+    return {"QUATERNION": ROTATION, "AXIS_ANGLE": "rotation_axis_angle"}.get(mode, EULER)
 
 
 def _in_mode_steps(quaternions: Floats, mode: str) -> Steps[Floats]:

@@ -21,7 +21,7 @@ from ..session.methods import (
     preset_items,
     written_options,
 )
-from ..session.port_scanner import port_scanner
+from .preferences import PERSONAL, delegating
 
 _kept_items: dict[str, Items] = {}
 """Blender does not keep the texts of menus that are made on the fly; this does."""
@@ -38,14 +38,6 @@ def _methods(_: PropertyGroup, __: Context) -> Items:
 
 def _presets(settings: PropertyGroup, _: Context) -> Items:
     return _kept(f"presets of {settings.method}", preset_items(settings.method))
-
-
-def _ports(_: PropertyGroup, __: Context, text: str) -> list[str]:
-    return [port.port for port in port_scanner.result.ports if text.lower() in port.port.lower()]
-
-
-def _drivers(_: PropertyGroup, __: Context, text: str) -> list[str]:
-    return [driver for driver in port_scanner.result.drivers if text.lower() in driver]
 
 
 def _is_armature(_: PropertyGroup, obj: Object) -> bool:
@@ -65,12 +57,67 @@ class SPARSEMOCAP_PG_option(PropertyGroup):
     value: StringProperty(name="Value", description="The value to use; press X for the default")
 
 
+class SPARSEMOCAP_PG_take(PropertyGroup):
+    """A recorded take of the scene; its samples are in its file."""
+
+    name: StringProperty(name="Take")
+    path: StringProperty(name="File", description="The take (.csv), relative to the .blend file")
+    duration_s: FloatProperty(name="Length", description="In s")
+    num_sensors: IntProperty(name="Sensors")
+    match: StringProperty(name="Match", description="How well its last reconstruction matched")
+    is_starred: BoolProperty(name="Star", description="Mark a good take")
+
+
+def _choose_take(settings: PropertyGroup, _: Context) -> None:
+    if 0 <= settings.take_index < len(settings.takes):
+        settings.take = settings.takes[settings.take_index].path
+
+
 class SPARSEMOCAP_PG_settings(PropertyGroup):
     """The settings of one scene."""
 
-    database: StringProperty(
-        name="Motion database", description="The motion database (.smdb) to reconstruct from"
+    takes: CollectionProperty(type=SPARSEMOCAP_PG_take)
+    take_index: IntProperty(name="Take", update=_choose_take)
+    use_range: BoolProperty(
+        name="Part of the take", description="Use only a part of the take, from one time to another"
     )
+    range_begin_s: FloatProperty(
+        name="From (s)",
+        description="Where the part begins, in s from the take's beginning",
+        min=0.0,
+    )
+    range_end_s: FloatProperty(
+        name="To (s)",
+        description="Where the part ends, in s from the take's beginning. 0: at its end",
+        min=0.0,
+    )
+    smooth_s: FloatProperty(
+        name="Smooth (s)",
+        description="Standard deviation of a Gaussian filter over the motion, in s. 0: none",
+        min=0.0,
+        max=1.0,
+        precision=3,
+        step=1,
+    )
+    reduce_keys: BoolProperty(
+        name="Reduce keys",
+        description="Leave out keys while the motion stays within the errors below",
+    )
+    largest_error_deg: FloatProperty(
+        name="Rotation (°)",
+        description="How far a bone's rotation may be off between keys, in degrees",
+        default=0.5,
+        min=0.0,
+        max=20.0,
+    )
+    largest_error_cm: FloatProperty(
+        name="Location (cm)",
+        description="How far a bone's location may be off between keys, in cm",
+        default=0.2,
+        min=0.0,
+        max=20.0,
+    )
+
     source: StringProperty(
         name="Folder",
         description="Folder with motion files (.bvh, or .amc with .asf) and subfolders",
@@ -206,50 +253,9 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
     in_place: BoolProperty(
         name="In place", description="Keep the live character at the origin while it moves"
     )
-    calibration: StringProperty(
-        name="Calibration",
-        description=(
-            "Calibration of the sensors (.json), made with Calibrate. Empty: the sensors are worn "
-            "in the default orientation (see README)"
-        ),
-        subtype="FILE_PATH",
-    )
-    height_m: FloatProperty(
-        name="Height (m)",
-        description="Body height of the performer, in metres",
-        default=1.75,
-        min=0.5,
-        max=2.5,
-    )
-    port: StringProperty(
-        name="Port",
-        description="The serial port of the sensors, or udp://HOST:PORT",
-        search=_ports,
-        search_options={"SUGGESTION"},
-    )
-    driver: StringProperty(
-        name="Sensor protocol",
-        description="Which kind of sensors is connected",
-        search=_drivers,
-        default="xsens_mt",
-    )
-    baud: IntProperty(
-        name="Baud rate",
-        description="Speed of the serial port, in bits per second",
-        default=115200,
-        min=1200,
-    )
-    driver_options: StringProperty(
-        name="Options",
-        description="Options of the protocol, for example: rate_hz=100, output=mtdata",
-    )
-    sites: StringProperty(
-        name="Sensor locations",
-        description=(
-            "Where each sensor is worn, in the order of the sensors and separated by commas, for "
-            "example: left_wrist, right_wrist. Empty: the names of the sensors"
-        ),
-    )
+
+
+SPARSEMOCAP_PG_settings.__annotations__ |= {name: delegating(name) for name in PERSONAL}
 
 
 def settings_of(scene: Scene) -> SPARSEMOCAP_PG_settings:
@@ -272,6 +278,7 @@ def register() -> None:
     """Register the settings."""
     bpy.utils.register_class(SPARSEMOCAP_PG_source)
     bpy.utils.register_class(SPARSEMOCAP_PG_option)
+    bpy.utils.register_class(SPARSEMOCAP_PG_take)
     bpy.utils.register_class(SPARSEMOCAP_PG_settings)
     Scene.sparse_mocap = PointerProperty(type=SPARSEMOCAP_PG_settings)
 
@@ -280,5 +287,6 @@ def unregister() -> None:
     """Unregister the settings."""
     del Scene.sparse_mocap
     bpy.utils.unregister_class(SPARSEMOCAP_PG_settings)
+    bpy.utils.unregister_class(SPARSEMOCAP_PG_take)
     bpy.utils.unregister_class(SPARSEMOCAP_PG_option)
     bpy.utils.unregister_class(SPARSEMOCAP_PG_source)

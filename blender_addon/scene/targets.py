@@ -46,7 +46,17 @@ def placement_of(
         settings.fastest_foot_mps,
         settings.highest_foot_m,
     )
-    return Placement(start_frame, render.fps / render.fps_base, whole_frames, lock, tuple(targets))
+    errors = (settings.largest_error_deg, settings.largest_error_cm)
+    return Placement(
+        start_frame,
+        render.fps / render.fps_base,
+        whole_frames,
+        part_s=(settings.range_begin_s, settings.range_end_s) if settings.use_range else None,
+        smooth_s=settings.smooth_s,
+        largest_errors=errors if settings.reduce_keys else None,
+        lock=lock,
+        targets=tuple(targets),
+    )
 
 
 def bound(context: Context, armature: Object) -> Target:

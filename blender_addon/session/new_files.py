@@ -9,10 +9,14 @@ from pathlib import Path
 TAKES = "takes"
 
 
-def takes_folder(blend_path: str) -> Path:
-    """The folder for takes: next to the .blend file, or in the home folder if it is not saved."""
-    home = Path(blend_path).parent if blend_path else Path.home() / "Sparse Mocap"
-    return home / TAKES
+def takes_folder(blend_path: str, folder: str = "") -> Path:
+    """The folder for takes: next to the .blend file; if that is not saved, in the given folder.
+
+    folder: empty for the one in the home folder.
+    """
+    if blend_path:
+        return Path(blend_path).parent / TAKES
+    return Path(folder) if folder else Path.home() / "Sparse Mocap" / TAKES
 
 
 def stamp() -> str:

@@ -18,6 +18,7 @@ from .methods import MethodChoice
 from .take import LoadedTake, takes
 
 RECONSTRUCTING = "Reconstructing"
+_MOST_KEPT = 8
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,23 @@ class Performance:
     """How well the sensors match the motion database: good, fair or poor."""
     is_guess: bool
     """Whether the database has nothing like the take."""
+
+
+_kept: dict[str, Performance] = {}
+"""The last results, by the take's name."""
+
+
+def keep(performance: Performance) -> None:
+    """Keep a result, so that it can be put on a character again."""
+    _kept.pop(performance.name, None)
+    _kept[performance.name] = performance
+    while len(_kept) > _MOST_KEPT:
+        _kept.pop(next(iter(_kept)))
+
+
+def kept(name: str) -> Performance | None:
+    """The last result of the take with that name, if it was made in this session."""
+    return _kept.get(name)
 
 
 def reconstruct_job(

@@ -6,13 +6,15 @@ from __future__ import annotations
 from bpy.types import Context, Panel, UILayout
 
 from ..scene.armature import is_ours
+from ..scene.ghost import ghost_of
 from ..scene.performance import facts_of, performed_action
 from ..scene.settings import SPARSEMOCAP_PG_settings, settings_of
+from ..session.bake import PLACING_AGAIN
 from ..session.core import missing_reason
 from ..session.methods import has_best_quality, preset_items
-from ..session.reconstruct import RECONSTRUCTING
+from ..session.reconstruct import RECONSTRUCTING, kept
 from . import text
-from .step import StepPanel, action_button
+from .step import StepPanel, action_button, job_is_running
 
 
 class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
@@ -70,6 +72,33 @@ def character(layout: UILayout, context: Context) -> None:
     others = [obj for obj in context.selected_objects if obj.type == "ARMATURE"]
     if settings.to_selected or any(obj != settings.target for obj in others):
         layout.prop(settings, "to_selected")
+
+
+class SPARSEMOCAP_PT_keys(StepPanel, Panel):
+    """Which part of the take gets keys, and how many."""
+
+    bl_idname = "SPARSEMOCAP_PT_keys"
+    bl_label = "Part and Keys"
+    bl_parent_id = "SPARSEMOCAP_PT_reconstruct"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Context) -> None:
+        """The range, smoothing and reduction."""
+        settings = settings_of(context.scene)
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(settings, "use_range")
+        column = layout.column(align=True)
+        column.active = settings.use_range
+        column.prop(settings, "range_begin_s")
+        column.prop(settings, "range_end_s")
+        layout.prop(settings, "smooth_s")
+        layout.prop(settings, "reduce_keys")
+        column = layout.column(align=True)
+        column.active = settings.reduce_keys
+        column.prop(settings, "largest_error_deg")
+        column.prop(settings, "largest_error_cm")
 
 
 class SPARSEMOCAP_PT_foot_lock(StepPanel, Panel):
@@ -130,24 +159,41 @@ def _quality(layout: UILayout, settings: SPARSEMOCAP_PG_settings) -> None:
 
 
 def _performed(layout: UILayout, context: Context) -> None:
-    """What the active armature performs."""
-    if is_ours(context.view_layer.objects.active):
+    """What the active character plays, and what can be done with it."""
+    active = context.view_layer.objects.active
+    if is_ours(active):
         layout.operator("sparse_mocap.add_body", icon="OUTLINER_OB_MESH")
-    action = performed_action(context.view_layer.objects.active)
+    action = performed_action(active)
     facts = None if action is None else facts_of(action)
-    if action is not None and facts is not None:
-        first, last = action.frame_range
-        rows = [
-            ("Action", action.name),
-            ("Duration", text.duration(facts.duration_s)),
-            ("Frames", f"{first:.0f} to {last:.0f}"),
-            ("Match", facts.match),
-        ]
-        text.facts(layout, rows)
-        if facts.is_guess:
-            text.paragraph(
-                layout, context, "The motion database has nothing like this take", icon="ERROR"
-            )
+    if action is None or facts is None:
+        return
+    first, last = action.frame_range
+    rows = [
+        ("Action", action.name),
+        ("Duration", text.duration(facts.duration_s)),
+        ("Frames", f"{first:.0f} to {last:.0f}"),
+        ("Match", facts.match),
+    ]
+    text.facts(layout, rows)
+    if facts.is_guess:
+        text.paragraph(
+            layout, context, "The motion database has nothing like this take", icon="ERROR"
+        )
+    if job_is_running(PLACING_AGAIN):
+        action_button(layout, "sparse_mocap.update_action", "NONE", PLACING_AGAIN, is_ready=True)
+    elif kept(facts.take) is not None:
+        layout.operator("sparse_mocap.update_action", icon="FILE_REFRESH")
+    row = layout.row(align=True)
+    if ghost_of(context, active) is None:
+        row.operator("sparse_mocap.compare", icon="GHOST_ENABLED")
+    else:
+        row.operator("sparse_mocap.stop_comparing", icon="GHOST_DISABLED")
+    row.operator("sparse_mocap.push_to_nla", text="To NLA", icon="NLA_PUSHDOWN")
 
 
-CLASSES = (SPARSEMOCAP_PT_reconstruct, SPARSEMOCAP_PT_foot_lock, SPARSEMOCAP_PT_options)
+CLASSES = (
+    SPARSEMOCAP_PT_reconstruct,
+    SPARSEMOCAP_PT_keys,
+    SPARSEMOCAP_PT_foot_lock,
+    SPARSEMOCAP_PT_options,
+)

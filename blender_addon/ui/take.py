@@ -1,20 +1,54 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Step 2 in the sidebar: the take."""
+"""Step 2 in the sidebar: the takes."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
-from bpy.types import Context, Panel, UILayout
+from bpy.types import Context, Panel, UILayout, UIList
 
 from ..scene.settings import settings_of
+from ..scene.takes import is_missing
 from ..session.core import missing_reason
 from ..session.take import takes
 from . import text
 from .step import StepPanel, redraw_soon, tick
 
+_ROWS = 4
+
+
+class SPARSEMOCAP_UL_takes(UIList):
+    """One line for each take: star, name, length, match."""
+
+    bl_idname = "SPARSEMOCAP_UL_takes"
+
+    def draw_item(
+        self,
+        context: Context,
+        layout: UILayout,
+        data: Any,
+        item: Any,
+        icon: int,
+        active_data: Any,
+        active_property: str,
+        index: int,
+    ) -> None:
+        """Draw the take."""
+        row = layout.row(align=True)
+        star = "SOLO_ON" if item.is_starred else "SOLO_OFF"
+        row.prop(item, "is_starred", text="", icon=star, emboss=False)
+        split = row.split(factor=0.6, align=True)
+        if is_missing(item):
+            split.label(text=item.name, icon="ERROR")
+            split.label(text="missing")
+            return
+        split.label(text=item.name)
+        split.label(text=f"{text.duration(item.duration_s)} {item.match}".strip())
+
 
 class SPARSEMOCAP_PT_take(StepPanel, Panel):
-    """The take in use."""
+    """The takes, and the one in use."""
 
     bl_idname = "SPARSEMOCAP_PT_take"
     bl_label = "2  Take"
@@ -26,15 +60,28 @@ class SPARSEMOCAP_PT_take(StepPanel, Panel):
         return not missing_reason()
 
     def draw(self, context: Context) -> None:
-        """The file, and its content."""
+        """The list, and the content of the chosen one."""
         settings = settings_of(context.scene)
-        row = self.layout.row(align=True)
-        row.prop(settings, "take", text="")
-        row.operator("sparse_mocap.load_take", text="", icon="FILE_FOLDER")
+        if settings.takes:
+            row = self.layout.row()
+            row.template_list(
+                "SPARSEMOCAP_UL_takes", "", settings, "takes", settings, "take_index", rows=_ROWS
+            )
+            column = row.column(align=True)
+            column.operator("sparse_mocap.load_take", text="", icon="FILE_FOLDER")
+            column.operator("sparse_mocap.find_takes", text="", icon="VIEWZOOM")
+            column.operator("sparse_mocap.remove_take", text="", icon="REMOVE")
+        else:
+            row = self.layout.row(align=True)
+            row.prop(settings, "take", text="")
+            row.operator("sparse_mocap.load_take", text="", icon="FILE_FOLDER")
+            row.operator("sparse_mocap.find_takes", text="", icon="VIEWZOOM")
         if settings.take:
             _contents(self.layout, context, bpy.path.abspath(settings.take))
         else:
-            text.paragraph(self.layout, context, "Load a recorded take (.csv)", icon="INFO")
+            text.paragraph(
+                self.layout, context, "Load a recorded take (.csv), or record one", icon="INFO"
+            )
 
     def draw_header_preset(self, context: Context) -> None:
         """A check mark when the step is done."""
@@ -61,4 +108,4 @@ def _contents(layout: UILayout, context: Context, path: str) -> None:
         text.paragraph(layout, context, names.capitalize())
 
 
-CLASSES = (SPARSEMOCAP_PT_take,)
+CLASSES = (SPARSEMOCAP_UL_takes, SPARSEMOCAP_PT_take)

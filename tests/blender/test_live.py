@@ -106,7 +106,7 @@ def test_a_recording_is_baked_beside_the_file_in_one_undo_step(tmp_path):
         assert done == {"FINISHED"}
         action = bpy.data.objects[name].animation_data.action
         assert action is not None
-        assert Path(settings().take).parent == tmp_path / "takes"
+        assert settings().take.startswith("//takes")
         assert len(bpy.data.armatures) == 1
         assert not session.is_live_wanted
         undo()
