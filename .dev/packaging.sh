@@ -1,12 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # shellcheck shell=sh disable=SC2016,SC2086,SC2153,SC2154,SC2164 # words split; set -e is ./dev's
 #
-# Read by ./dev: the files that are handed out, for Linux x86-64 since glibc 2.28. zig compiles the
-# core once and the bindings for each CPython; the Python package in .dev/packaging/ makes the archives.
+# Read by ./dev: the files that are handed out. The core is compiled once for each target and the
+# bindings for each CPython; the Python package in .dev/packaging/ makes the archives.
 
 ZIG_REQUIREMENTS='ziglang==0.17.1'
 ZIG=$(environment zig "$ZIG_REQUIREMENTS")
 PACKAGE_BUILD=$ROOT/build/package
+
+# The targets, named as Blender names platforms; each has its file in .dev/packaging/toolchains.
+TARGETS='linux-x64 macos-arm64'
+THIS_TARGET=linux-x64
+MACOS_PACKAGES='lld-19'
+
+# pythons_of TARGET: the CPythons that a module is built for.
+pythons_of() {
+  case $1 in
+    linux-x64) echo 3.11 3.13 3.14 ;;
+    *) echo 3.11 3.13 ;; # Blender's own downloads; 3.14 is Debian's alone
+  esac
+}
 
 verb_package() {
   case ${1:-} in
@@ -16,13 +29,24 @@ verb_package() {
   cat "$(log_of 'Make the release files')"
 }
 
-# make_release_files [--quick]: in build/packages, checked.
+# make_release_files [--quick]: in build/packages, checked; with --quick for this machine alone.
 make_release_files() {
-  basics
+  case ${1:-} in
+    --quick) targets=$THIS_TARGET && basics ;;
+    *) targets=$TARGETS && basics $MACOS_PACKAGES ;;
+  esac
   locked "$CACHE/lock" need_zig
-  [ "${1:-}" = --quick ] || locked "$CACHE/lock" need_headers
-  locked "$ROOT/build/lock" step 'Build (package)' build_package
-  locked "$ROOT/build/lock" step 'Make the release files' pack_release_files
+  locked "$CACHE/lock" need_headers
+  locked "$ROOT/build/lock" build_and_pack $targets
+}
+
+build_and_pack() {
+  step 'Gather headers' gather_headers
+  for target in "$@"; do
+    locked "$CACHE/lock" need_ceres "$target"
+    step "Build for $target" for_target "$target" build_modules "$target"
+  done
+  step 'Make the release files' pack_release_files
 }
 
 pack_release_files() {
@@ -59,91 +83,69 @@ fetch_pyserial() {
 
 # --- Headers -------------------------------------------------------------------------------------
 
+# The headers of CPythons that later Debians have.
 need_headers() {
   need_header_folder 3.13 trixie
   need_header_folder 3.14 forky
 }
 
-# need_header_folder VERSION SUITE: the headers of a CPython that a later Debian has.
 need_header_folder() {
   [ -d "$CACHE/headers-$1" ] ||
     QUIET='' step "Fetch the headers of CPython $1" fetch_headers "$1" "$2"
 }
 
-# By apt with lists of its own, as the source of Ceres is fetched.
 fetch_headers() {
   headers=$CACHE/headers-$1
   work=$(mktemp -d "$CACHE/headers.XXXXXX")
   trap 'rm -rf "$work"' EXIT
-  mkdir -p "$work/lists/partial" "$work/archives/partial"
-  site=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Origin: Debian' \
-    'Codename: bookworm' 'Component: main' | head -n 1)
-  echo "deb ${site:-http://deb.debian.org/debian} $2 main" >"$work/sources.list"
-  cd "$work"
   package=libpython$1-dev
-  set -- -o Dir::Etc::SourceList="$work/sources.list" -o Dir::Etc::SourceParts=/dev/null \
-    -o Dir::State::Lists="$work/lists" -o Dir::Cache="$work" -o Acquire::Retries=3 \
-    -o APT::Sandbox::User="$(id -un)"
-  apt-get "$@" update
-  apt-get "$@" download "$package"
+  apt_of "$work" deb "$2" download "$package"
   dpkg-deb -x "$package"_*.deb unpacked
   mv unpacked/usr/include "$headers"
 }
 
-# header_folders VERSION: the folders with the headers of that CPython, as CMake lists them; nothing
-# if there are none.
-header_folders() {
-  if [ -d "$CACHE/headers-$1" ]; then
-    echo "$CACHE/headers-$1/python$1;$CACHE/headers-$1"
-  elif [ "$1" = 3.13 ]; then
-    python313=$(find_python313)
-    [ -z "$python313" ] ||
-      "$python313" -c 'import sysconfig; print(sysconfig.get_path("include"))'
-  fi
-}
-
-# --- Building ------------------------------------------------------------------------------------
-
-build_package() {
-  export SPARSE_MOCAP_ZIG="$ZIG/lib/python3.11/site-packages/ziglang/zig"
-  export ZIG_GLOBAL_CACHE_DIR="$CACHE/zig-cache" ZIG_LOCAL_CACHE_DIR="$CACHE/zig-cache"
-  # The compiler that ccache sees is a script that never changes.
-  export CCACHE_COMPILERCHECK="string:$ZIG_REQUIREMENTS"
-  make_prefix "$PACKAGE_BUILD/prefix"
-  # zig adds -g by itself: a quarter more work, and the names of folders, for what -s drops again.
-  set -- -DSPARSE_MOCAP_PREFIX="$PACKAGE_BUILD/prefix" \
-    -DSPARSE_MOCAP_XXHASH_INCLUDE_DIR="$PACKAGE_BUILD/prefix/include" \
-    -DCMAKE_CXX_FLAGS="-g0 -ffile-prefix-map=$ROOT=. -ffile-prefix-map=$CACHE=." \
-    -DPython_EXECUTABLE="$VENV/bin/python" \
-    -DPython_INCLUDE_DIR="$PACKAGE_BUILD/prefix/include/python3.11" \
-    -Dpybind11_DIR="$("$VENV/bin/python" -m pybind11 --cmakedir)"
-  targets=_core # for this Debian's CPython, 3.11
-  for version in 3.13 3.14; do
-    folders=$(header_folders "$version")
-    set -- "$@" -DSPARSE_MOCAP_HEADERS_$version="$folders"
-    [ -z "$folders" ] || targets="$targets _core_$version"
-  done
-  rm -rf "$PACKAGE_BUILD/modules"
-  cd "$ROOT"
-  cmake --fresh --preset package "$@"
-  cmake --build build/package --target $targets
-}
-
-# make_prefix FOLDER: the libraries that are headers alone, and the headers of this Debian's CPython,
-# copied together so that the rest of /usr/include stays out of sight. CMake's packages of these name
-# /usr/include itself; here each has one that names the folder.
-make_prefix() {
-  rm -rf "$1"
-  mkdir -p "$1/include/x86_64-linux-gnu"
+# gather_headers: what compilers for other systems may see: the libraries that are headers alone, and
+# those of each CPython, copied so that the rest of /usr/include stays out of sight.
+gather_headers() {
+  prefix=$PACKAGE_BUILD/prefix
+  rm -rf "$PACKAGE_BUILD"
+  mkdir -p "$prefix/include"
   cp -RLp /usr/include/eigen3/. /usr/include/nlohmann /usr/include/nanoflann.hpp \
-    /usr/include/xxhash.h /usr/include/python3.11 "$1/include/"
-  cp -RLp /usr/include/x86_64-linux-gnu/python3.11 "$1/include/x86_64-linux-gnu/"
-  write_cmake_package "$1" Eigen3 Eigen3::Eigen libeigen3-dev
-  write_cmake_package "$1" nanoflann nanoflann::nanoflann libnanoflann-dev
-  write_cmake_package "$1" nlohmann_json nlohmann_json::nlohmann_json nlohmann-json3-dev
+    /usr/include/xxhash.h "$prefix/include/"
+  write_cmake_package "$prefix" Eigen3 Eigen3::Eigen libeigen3-dev
+  write_cmake_package "$prefix" nanoflann nanoflann::nanoflann libnanoflann-dev
+  write_cmake_package "$prefix" nlohmann_json nlohmann_json::nlohmann_json nlohmann-json3-dev
+  for target in $TARGETS; do
+    for version in $(pythons_of "$target"); do
+      gather_python_headers "$target" "$version"
+    done
+  done
 }
 
-# write_cmake_package PREFIX NAME TARGET PACKAGE: the version is that of the Debian package.
+# python_headers TARGET VERSION: the folder for that CPython's headers.
+python_headers() { echo "$PACKAGE_BUILD/python/$1-$2"; }
+
+# gather_python_headers TARGET VERSION: pyconfig.h describes the system; that of 64-bit Linux is true
+# of macOS in all that modules see, but for the names of BSD that macOS has as well.
+gather_python_headers() {
+  case $2 in
+    3.11) from=/usr/include ;; # this Debian's own
+    *) from=$CACHE/headers-$2 ;;
+  esac
+  folder=$(python_headers "$1" "$2")
+  mkdir -p "$folder"
+  cp -RLp "$from/python$2/." "$folder"
+  cp -Lp "$from/x86_64-linux-gnu/python$2/pyconfig.h" "$folder"
+  case $1 in
+    macos-*)
+      echo '#define _DARWIN_C_SOURCE 1' >>"$folder/pyconfig.h"
+      touch -r "$folder/Python.h" "$folder/pyconfig.h" # it is as old as before
+      ;;
+  esac
+}
+
+# write_cmake_package PREFIX NAME TARGET PACKAGE: CMake's own package of a library names /usr/include;
+# this one names the folder. The version is that of the Debian package.
 write_cmake_package() {
   folder=$1/share/cmake/$2
   mkdir -p "$folder"
@@ -158,4 +160,38 @@ EOF
 set(PACKAGE_VERSION "$version")
 set(PACKAGE_VERSION_COMPATIBLE TRUE)
 EOF
+}
+
+# --- Building ------------------------------------------------------------------------------------
+
+# for_target TARGET COMMAND...: COMMAND and the options that tell CMake to compile for TARGET.
+for_target() {
+  toolchain=$ROOT/.dev/packaging/toolchains/$1.cmake
+  shift
+  export SPARSE_MOCAP_ZIG="$ZIG/lib/python3.11/site-packages/ziglang/zig"
+  export ZIG_GLOBAL_CACHE_DIR="$CACHE/zig-cache" ZIG_LOCAL_CACHE_DIR="$CACHE/zig-cache"
+  # The compiler that ccache sees is a script that never changes.
+  export CCACHE_COMPILERCHECK="string:$ZIG_REQUIREMENTS"
+  "$@" -DCMAKE_TOOLCHAIN_FILE="$toolchain" -DSPARSE_MOCAP_PREFIX="$PACKAGE_BUILD/prefix"
+}
+
+# build_modules TARGET CMAKE_OPTION...: zig adds -g by itself: a quarter more work, and the names of
+# folders, for what is dropped again.
+build_modules() {
+  target=$1
+  shift
+  wanted=''
+  for version in $(pythons_of "$target"); do
+    set -- "$@" -DSPARSE_MOCAP_HEADERS_$version="$(python_headers "$target" "$version")"
+    wanted="$wanted _core_$version"
+  done
+  cd "$ROOT"
+  cmake --fresh --preset package -B "build/package-$target" "$@" \
+    -DSPARSE_MOCAP_XXHASH_INCLUDE_DIR="$PACKAGE_BUILD/prefix/include" \
+    -DCMAKE_CXX_FLAGS="-g0 -ffile-prefix-map=$ROOT=. -ffile-prefix-map=$CACHE=." \
+    -DCeres_DIR="$(ceres_of "$target")/lib/cmake/Ceres" \
+    -DPython_EXECUTABLE="$VENV/bin/python" \
+    -DPython_INCLUDE_DIR="$(python_headers "$target" 3.11)" \
+    -Dpybind11_DIR="$("$VENV/bin/python" -m pybind11 --cmakedir)"
+  cmake --build "build/package-$target" --target $wanted
 }
