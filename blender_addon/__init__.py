@@ -8,6 +8,7 @@ operators and panels, one file for each step. Importing this package alone does 
 from __future__ import annotations
 
 import sys
+import textwrap
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -24,13 +25,20 @@ bl_info = {
 }
 
 
+_bare_panels: list[type] = []
+
+
 def register() -> None:
     """Register the operators and panels, or the panel that says why they cannot work."""
-    problem = _problem()
-    if problem is not None:
-        from .ui import installation
+    try:
+        problem = _problem()
+        if problem is not None:
+            from .ui import installation
 
-        installation.register(problem)
+            installation.register(problem)
+            return
+    except Exception as error:  # a file that would explain is missing or damaged
+        _register_bare_panel(error)
         return
     from . import scene
     from .ops import registration as ops
@@ -43,21 +51,58 @@ def register() -> None:
 
 def unregister() -> None:
     """Stop everything and unload the modules too, so that an upgrade loads its own."""
+    if _bare_panels:
+        _unregister_bare_panel()
+    else:
+        _unregister_all()
+    for name in [name for name in sys.modules if name.startswith(f"{__package__}.")]:
+        del sys.modules[name]
+        globals().pop(name.removeprefix(f"{__package__}."), None)
+
+
+def _unregister_all() -> None:
     from .ui import installation
 
     if installation.is_shown():
         installation.unregister()
-    else:
-        from . import scene
-        from .ops import registration as ops
-        from .ui import registration as ui
+        return
+    from . import scene
+    from .ops import registration as ops
+    from .ui import registration as ui
 
-        ui.unregister()
-        ops.unregister()
-        scene.unregister()
-    for name in [name for name in sys.modules if name.startswith(f"{__package__}.")]:
-        del sys.modules[name]
-        globals().pop(name.removeprefix(f"{__package__}."), None)
+    ui.unregister()
+    ops.unregister()
+    scene.unregister()
+
+
+def _register_bare_panel(error: Exception) -> None:
+    """Register a panel that needs no other file of the add-on."""
+    import bpy
+
+    lost = (getattr(error, "name", None) or "").removeprefix(f"{__package__}.").replace(".", "/")
+    is_lost = isinstance(error, ModuleNotFoundError) and lost
+    what = f"{lost}.py is missing" if is_lost else " ".join(str(error).split())
+    reason = f"The installation is incomplete ({what}): reinstall the add-on from the release file"
+
+    def draw(self: bpy.types.Panel, _: bpy.types.Context) -> None:
+        for line in textwrap.wrap(reason, 32):
+            self.layout.label(text=line)
+
+    settings = {
+        "bl_label": "Sparse Mocap",
+        "bl_space_type": "VIEW_3D",
+        "bl_region_type": "UI",
+        "bl_category": "Sparse Mocap",
+        "draw": draw,
+    }
+    _bare_panels.append(type("SPARSEMOCAP_PT_installation", (bpy.types.Panel,), settings))
+    bpy.utils.register_class(_bare_panels[0])
+
+
+def _unregister_bare_panel() -> None:
+    import bpy
+
+    bpy.utils.unregister_class(_bare_panels.pop())
 
 
 def _problem() -> Problem | None:

@@ -22,6 +22,9 @@ BLENDERS = {
 }
 """The Blenders of each CPython that a compiled module may be for."""
 
+RELEASED = "compiled_modules.txt"
+"""The file beside the compiled modules that lists them, one a line."""
+
 _REINSTALL = "reinstall the add-on from the release file"
 _SYSTEMS = {"musl": "Linux with musl", "linux": "Linux", "darwin": "macOS", "win": "Windows"}
 _MODULE = re.compile(r"_core\.(?:cpython-|cp)(\d)(\d+t?)(?:-([\w-]+))?\.(?:so|pyd)$")
@@ -102,6 +105,14 @@ def compiled_modules(package: Path) -> list[str]:
     """The names of the compiled modules in the package's folder."""
     names = (path.name for path in package.glob("_core.*") if path.suffix in (".so", ".pyd"))
     return sorted(names)
+
+
+def released_modules(package: Path) -> list[str]:
+    """The names of the compiled modules that the release put there; empty when it does not tell."""
+    try:
+        return (package / RELEASED).read_text(encoding="utf-8").split()
+    except OSError:
+        return []
 
 
 def import_problem(error: BaseException, host: Host, package: Path | None) -> Problem:
@@ -209,7 +220,8 @@ def _no_module(host: Host, package: Path) -> str:
     """No compiled module has a name that this Python looks for."""
     if host.target.machine == "32-bit":
         return "Sparse Mocap needs a 64-bit Blender and this one is 32-bit: install a 64-bit one"
-    targets = [target for name in compiled_modules(package) if (target := target_of(name))]
+    names = {*compiled_modules(package), *released_modules(package)}
+    targets = [target for name in names if (target := target_of(name))]
     here = [target for target in targets if _fits(target, host.target)]
     if here and all(target.python != host.target.python for target in here):
         return _other_python(host, {target.python for target in here})

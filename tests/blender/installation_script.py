@@ -66,7 +66,8 @@ def enable() -> dict[str, object]:
         context = SimpleNamespace(region=wide, preferences=preferences)
         panel.draw(SimpleNamespace(layout=layout), context)
         found |= {"says": " ".join(layout.labels), "operators": layout.operators}
-        found["copied"] = sorted(bpy.ops.sparse_mocap.copy_report())
+        if "copy_report" in dir(bpy.ops.sparse_mocap):
+            found["copied"] = sorted(bpy.ops.sparse_mocap.copy_report())
         found["clipboard"] = bpy.context.window_manager.clipboard
     return found
 

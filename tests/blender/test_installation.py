@@ -30,7 +30,7 @@ def _installed(folder: Path, *, is_extension: bool = False) -> tuple[Path, Path]
         addon = folder / "extensions" / "user_default" / "sparse_mocap"
         wheels = folder / "extensions" / ".local" / "lib" / f"python{PYTHON}" / "site-packages"
         vendor = wheels / "sparse_mocap"
-    ignored = shutil.ignore_patterns("__pycache__", "_core.*.so", "vendor")
+    ignored = shutil.ignore_patterns("__pycache__", "_core.*.so", "compiled_modules.txt", "vendor")
     shutil.copytree(Path(installed.module().__file__).parent, addon, ignore=ignored)
     shutil.copytree(Path(sparse_mocap.__file__).parent, vendor, ignore=ignored)
     manifest = addon / "blender_manifest.toml"
@@ -109,6 +109,15 @@ def test_only_the_module_of_another_python(tmp_path):
     assert "only with Python 3.12: install the release for" in said
 
 
+def test_the_module_of_this_python_was_removed_and_others_are_there(tmp_path):
+    _, compiled = _installed(tmp_path)
+    number = PYTHON.replace(".", "")
+    other = compiled.with_name(compiled.name.replace(f"-{number}-", "-312-"))
+    compiled.rename(other)
+    (other.parent / "compiled_modules.txt").write_text(f"{compiled.name}\n{other.name}\n")
+    assert _said(_run(tmp_path)).startswith("The compiled file _core is missing in ~/scripts/")
+
+
 def test_without_numpy(tmp_path):
     _installed(tmp_path)
     assert _said(_run(tmp_path, "hide_numpy")).startswith("This Blender's Python has no NumPy: ")
@@ -170,6 +179,22 @@ def test_missing_files(tmp_path):
     assert "(sparse_mocap/take is missing)" in _said(_run(tmp_path))
     shutil.rmtree(addon / "vendor")
     assert "(sparse_mocap is missing)" in _said(_run(tmp_path))
+
+
+def test_missing_files_of_what_explains(tmp_path):
+    addon, _ = _installed(tmp_path)
+    for name in ("session/core.py", "session/installation.py", "ui/__init__.py", "ui/text.py"):
+        if name.startswith("ui"):  # they explain only what else is wrong
+            shutil.rmtree(addon / "vendor", ignore_errors=True)
+        lost = (addon / name).rename(tmp_path / "lost")
+        first = _run(tmp_path)["first"]
+        lost.rename(addon / name)
+        assert first["panels"] == EXPLAINED, name
+        assert first["says"].startswith("The installation is incomplete ("), name
+        assert first["says"].endswith(REINSTALL)
+    (addon / "session" / "core.py").write_text("def (")
+    says = _run(tmp_path)["first"]["says"]
+    assert says.startswith("The installation is incomplete (invalid syntax (core.py, line 1")
 
 
 def test_another_copy_was_imported_before(tmp_path):

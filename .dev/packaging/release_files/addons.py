@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from .archives import Files, under, unzipped
 from .errors import PackagingError
 from .project import Project
+from .wheels import package_files
 
 LEGACY_FOLDER = "sparse_mocap_addon"
 """Blender puts the folder of add-ons on the module path: one called ``sparse_mocap`` would hide the
@@ -40,10 +41,6 @@ def legacy_files(project: Project, modules: Files, pyserial: bytes) -> dict[str,
     serial = {name: data for name, data in unzipped(pyserial).items() if name.startswith("serial/")}
     if not serial:
         raise PackagingError("the wheel of pyserial holds no package serial")
-    vendor = {
-        **under("sparse_mocap", project.package),
-        **under("sparse_mocap", modules),
-        **serial,
-    }
-    files = {**project.addon, **project.licences, **under("vendor", vendor)}
+    vendor = under("vendor", {**package_files(project, modules), **serial})
+    files = {**project.addon, **project.licences, **vendor}
     return under(LEGACY_FOLDER, files)

@@ -23,8 +23,7 @@ def wheel_files(project: Project, modules: Files, tag: str) -> dict[str, bytes]:
     """What a wheel with these compiled modules holds, its RECORD included."""
     info = f"{PACKAGE}-{project.version}.dist-info"
     files = {
-        **under(PACKAGE, project.package),
-        **under(PACKAGE, modules),
+        **package_files(project, modules),
         **under(f"{info}/licenses", project.licences),
         f"{info}/METADATA": metadata(project),
         f"{info}/WHEEL": _wheel(tag),
@@ -32,6 +31,12 @@ def wheel_files(project: Project, modules: Files, tag: str) -> dict[str, bytes]:
     }
     files[f"{info}/RECORD"] = record(files, f"{info}/RECORD")
     return files
+
+
+def package_files(project: Project, modules: Files) -> dict[str, bytes]:
+    """The package with compiled modules, and their names, which tell when one is removed later."""
+    names = _text(sorted(modules))
+    return under(PACKAGE, {**project.package, **modules, "compiled_modules.txt": names})
 
 
 def metadata(project: Project) -> bytes:

@@ -118,6 +118,18 @@ def test_a_removed_compiled_module(tmp_path):
     )
 
 
+def test_one_of_several_modules_was_removed(tmp_path):
+    folder = package(tmp_path, LINUX.format(313))
+    released = "".join(f"{LINUX.format(number)}\n" for number in (311, 313))
+    (folder / installation.RELEASED).write_text(released)
+    said = import_problem(NO_CORE, host("3.11"), folder).reason
+    assert said.startswith("The compiled file _core is missing in ")
+    other = import_problem(NO_CORE, host("3.12"), folder).reason
+    assert "only with Python 3.11 (Blender 4.1 to 5.0 and Debian's 3.4) and 3.13 (" in other
+    here = import_problem(NO_CORE, host("3.11", system="Windows"), folder).reason
+    assert here.startswith("This release of Sparse Mocap is for Linux (x86-64) and")
+
+
 @pytest.mark.parametrize(
     ("error", "what"),
     [
