@@ -12,6 +12,7 @@ from bpy.types import Context, Operator
 
 from ..scene import live as live_scene
 from ..scene.armature import is_ours
+from ..scene.online import check_online_access
 from ..scene.performance import extend_scene, perform_steps
 from ..scene.settings import scene_choice, settings_of
 from ..scene.takes import add_take
@@ -84,6 +85,7 @@ class SPARSEMOCAP_OT_connect_sensors(_NowOperator, Operator):
     def act(self, context: Context) -> str:
         """Start a session; the panel shows its state."""
         settings = settings_of(context.scene)
+        check_online_access(settings.port)
         port = sensors.Port(
             settings.port, settings.driver, settings.baud, settings.driver_options, settings.sites
         )

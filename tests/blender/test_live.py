@@ -75,6 +75,20 @@ def test_the_armature_moves_and_nothing_else(tmp_path):
         assert 0.0 < p50 < 5000.0
 
 
+def test_a_network_is_used_only_if_blender_may():
+    """Blender 4.2 and later; factory settings allow none."""
+    settings().port = "udp://0.0.0.0:6969"
+    if getattr(bpy.app, "online_access", True):
+        raise Skipped("this Blender may use the network")
+    said = error_of(bpy.ops.sparse_mocap.connect_sensors)
+    assert "turn on Allow Online Access in Preferences > System" in said
+    assert addon("session.live").current() is None
+    on_network = addon("scene.online").is_on_network
+    assert [on_network(port) for port in ("socket://10.0.0.2:80", "udp://[::]:6969")] == [True] * 2
+    for port in ("/dev/ttyUSB0", "COM3", "udp://127.0.0.1:6969", "udp://[::1]:9", "udp://[", ""):
+        assert not on_network(port), port
+
+
 def test_the_shown_pose_is_the_cores(tmp_path):
     """Forward kinematics of the core is the oracle."""
     import sparse_mocap
