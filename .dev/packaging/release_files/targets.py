@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from . import linux, windows
+from . import linux, macos, windows
 from .errors import PackagingError
 from .examined import Examined
 
@@ -44,6 +44,13 @@ TARGETS = (
         wheel="win_amd64",
         module="_core.cp{}-win_amd64.pyd",
         examine=windows.examine,
+    ),
+    Target(
+        words="macOS arm64",
+        blender="macos-arm64",
+        wheel="macosx_11_0_arm64",
+        module="_core.cpython-{}-darwin.so",
+        examine=macos.examine,
     ),
 )
 
