@@ -26,8 +26,10 @@ import installed  # noqa: E402 - before bpy, which reads the user folders that i
 installed.prepare_paths()
 
 import bpy  # noqa: E402 - as a module it must be imported before its submodules
+from loaded_module import NO_MODULE, loaded_module  # noqa: E402 - beside the tests' folder
 
 Test = Callable[..., None]
+_compiled: set[str] = set()  # what the tests had loaded; disabling the add-on unloads it
 
 
 def main() -> int:
@@ -41,6 +43,7 @@ def main() -> int:
         outcome = _outcome(test, support)
         outcomes[outcome] += 1
         print(f"{outcome} {module}::{name} {time.perf_counter() - start:.2f} s", flush=True)
+    print("\n".join(sorted(_compiled - {NO_MODULE}) or [NO_MODULE]))
     print(f"Blender {bpy.app.version_string}, Python {sys.version.split()[0]}")
     print(", ".join(f"{count} {name}" for name, count in outcomes.items()), flush=True)
     return outcomes["failed"] or int(outcomes["passed"] == 0)
@@ -69,6 +72,7 @@ def _outcome(test: Test, support) -> str:
                 test(tmp_path=Path(folder))
             else:
                 test()
+            _compiled.add(loaded_module())
     except support.Skipped as reason:
         print(f"skipped: {reason}")
         return "skipped"

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import hashlib
 import io
 import json
@@ -227,6 +228,7 @@ def test_the_extension_has_its_wheels_and_a_manifest_that_names_them(
     in_wheel = archives.unzipped(files[f"wheels/{ours}"])
     for name, data in modules.items():
         assert in_wheel[f"sparse_mocap/{name}"] == data
+    assert in_wheel["sparse_mocap/compiled_modules.txt"].decode().split() == sorted(modules)
     assert files["LICENSE"].lstrip().startswith(b"GNU GENERAL PUBLIC LICENSE")
     assert {"__init__.py", "session/core.py"} <= files.keys()
     assert not any(name.startswith("vendor/") for name in files)
@@ -318,6 +320,11 @@ def test_a_pyproject_that_cannot_be_moved_is_told(tmp_path: Path) -> None:
 
 def test_what_is_written_is_listed_with_its_hash(made: release.Release, tmp_path: Path) -> None:
     (tmp_path / "sparse_mocap-0.0.9.zip").write_bytes(b"of an earlier run")
+    headers = tmp_path / "headers" / "linux-x64-3.14"
+    headers.mkdir(parents=True)
+    (headers / "patchlevel.h").write_text('#define PY_MAJOR 3\n#define PY_VERSION    "3.14.8"\n')
+    made = dataclasses.replace(made, headers=release.header_versions(headers.parent))
+    shutil.rmtree(headers.parent)
     release.write_release(made, tmp_path)
     listed = (tmp_path / "SHA256SUMS").read_text().splitlines()
     on_disk = {path.name for path in tmp_path.iterdir()} - {"SHA256SUMS", "report.json"}
@@ -327,8 +334,9 @@ def test_what_is_written_is_listed_with_its_hash(made: release.Release, tmp_path
     assert report["version"] == made.version
     assert {module["name"] for module in report["modules"]} == {MODULE_311, MODULE_313}
     assert report["files"].keys() == set(made.files)
+    assert report["headers"] == {"linux-x64-3.14": "3.14.8"}
     assert len(report["checks"]) == 5  # three wheels of ours, that of pyserial, the hashes
-    assert len(list(release.table(made))) == 2 + 5 + 5
+    assert len(list(release.table(made))) == 2 + 5 + 1 + 5
 
 
 def test_a_release_for_two_systems_has_the_files_of_both(

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from .errors import PackagingError
-from .release import make_release, table, write_release
+from .release import header_versions, make_release, table, write_release
 
 
 def main() -> int:
@@ -17,6 +17,7 @@ def main() -> int:
         "--modules", type=Path, nargs="+", required=True, help="folders of compiled modules"
     )
     parser.add_argument("--pyserial", type=Path, required=True, help="folder of pyserial's wheel")
+    parser.add_argument("--headers", type=Path, help="folder of CPython's headers, by target")
     parser.add_argument("--output", type=Path, required=True)
     options = parser.parse_args()
     modules = {
@@ -30,6 +31,8 @@ def main() -> int:
     except PackagingError as error:
         print(f"{error}\nNothing was written.", file=sys.stderr)
         return 1
+    if options.headers is not None:
+        release.headers |= header_versions(options.headers)
     write_release(release, options.output)
     print("\n".join(table(release)))
     return 0

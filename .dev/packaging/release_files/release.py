@@ -4,6 +4,7 @@
 import dataclasses
 import hashlib
 import json
+import re
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -50,6 +51,8 @@ class Release:
     modules: list[CheckedModule]
     files: dict[str, Made] = field(default_factory=dict)
     checks: list[str] = field(default_factory=list)
+    headers: dict[str, str] = field(default_factory=dict)
+    """The exact version of the headers by which the modules were compiled, such as 3.14.8."""
 
     def add(self, name: str, make: Callable[[], bytes]) -> bytes:
         """Make a file, and remember it and how long it took."""
@@ -168,9 +171,19 @@ def write_release(release: Release, output: Path) -> None:
             }
             for name, made in sorted(release.files.items())
         },
+        "headers": release.headers,
         "checks": release.checks,
     }
     (output / "report.json").write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")
+
+
+def header_versions(folder: Path) -> dict[str, str]:
+    """The versions of CPython's headers, by the names of the folders that hold them."""
+    found = {}
+    for path in sorted(folder.glob("*/patchlevel.h")):
+        version = re.search(r'#define PY_VERSION\s+"([^"]+)"', path.read_text("utf-8"))
+        found[path.parent.name] = version[1] if version else "unknown"
+    return found
 
 
 def table(release: Release) -> Iterator[str]:
@@ -182,6 +195,8 @@ def table(release: Release) -> Iterator[str]:
         )
     for name, made in sorted(release.files.items()):
         yield f"{name:<60} {_megabytes(len(made.data))}  {made.seconds:.1f} s"
+    for name, version in release.headers.items():
+        yield f"headers of CPython for {name}: {version}"
     yield from release.checks
 
 
