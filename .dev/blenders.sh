@@ -46,15 +46,30 @@ test_blender() {
   trap 'rm -rf "$home"' EXIT
   cd "$ROOT"
   [ -n "$runner" ] || export SPARSE_MOCAP_TEST_PYTHON="$VENV/bin/python" # for this Debian alone
-  $runner timeout 1200 env HOME="$HOME" DISPLAY="$DISPLAY" XAUTHORITY="$XAUTHORITY" \
+  $runner timeout 1200 env HOME="$HOME" DISPLAY="${DISPLAY:-}" XAUTHORITY="${XAUTHORITY:-}" \
     BLENDER_USER_RESOURCES="$home" BLENDER_USER_CONFIG="$home" BLENDER_USER_SCRIPTS="$home" \
     SPARSE_MOCAP_PACKAGE="$(release_file_for "$1")" \
     blender -b --factory-startup --python-exit-code 1 --python "$ROOT/tests/blender/run.py"
 }
 
+# verb_index: the list by which Blender installs and updates the extension, beside the extension: a
+# folder for any web server.
+verb_index() {
+  need_blender 4.3
+  make_release_files
+  repository=$ROOT/build/repository
+  home=$ROOT/build/blender-4.3
+  rm -rf "$repository"
+  mkdir -p "$repository" "$home"
+  cp "$(release_file_for 4.3)" "$repository/"
+  QUIET='' step 'Make the index' run_blender --command extension server-generate \
+    --repo-dir "$repository"
+  ls "$repository"
+}
+
 # need_blender VERSION: that Blender, and in $runner and $root how commands reach it.
 need_blender() {
-  root=$CACHE/root-$1-2 # the last number counts the changes to make_root
+  root=$(root_of "$1")
   case $1 in
     3.4)
       runner=''
@@ -69,6 +84,9 @@ need_blender() {
   basics
   locked "$CACHE/lock" need_root "$root" "$suite"
 }
+
+root_of() { echo "$CACHE/root-$1-2"; } # the last number counts the changes to make_blender_root
+has_root() { [ -d "$(root_of "$1")" ]; }
 
 install_addon() {
   release_file=$(release_file_for "$1")
@@ -89,19 +107,28 @@ run_blender() {
 # need_root FOLDER SUITE: a Debian of its own that holds a Blender.
 need_root() {
   need_packages debootstrap
-  [ -d "$1" ] || QUIET='' step "Install Blender in a root of Debian $2" make_root "$1" "$2"
+  [ -d "$1" ] || QUIET='' step "Install Blender in a root of Debian $2" make_blender_root "$1" "$2"
 }
 
+# python3-cattr and -requests: Blender's extensions import them, unstable's package forgets them.
+# libgl1: no package asks for it, and Blender opens no window without it.
+make_blender_root() {
+  make_root "$1" "$2" \
+    blender python3-numpy libgl1 libgl1-mesa-dri python3-cattr python3-requests
+}
+
+# make_root FOLDER SUITE PACKAGE...: a Debian of that suite with these packages.
 make_root() {
-  root=$1.part
+  made=$1
+  suite_of_root=$2
+  shift 2
+  root=$made.part
   as_root rm -rf "$root"
-  as_root debootstrap --variant=minbase "$2" "$root"
+  as_root debootstrap --variant=minbase "$suite_of_root" "$root"
   as_root cp -a /etc/apt/apt.conf.d "$root/etc/apt/"
   as_root cp -L /etc/resolv.conf "$root/etc/"
-  # python3-cattr and -requests: Blender's extensions import them, unstable's package forgets them.
-  # libgl1: no package asks for it, and Blender opens no window without it.
-  apt_install in_root blender python3-numpy libgl1 libgl1-mesa-dri python3-cattr python3-requests
-  as_root mv "$root" "$1"
+  apt_install in_root "$@"
+  as_root mv "$root" "$made"
 }
 
 # in_root COMMAND...: in the folder $root, as root, with this machine's files where they are.

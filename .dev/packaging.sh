@@ -23,10 +23,48 @@ pythons_of() {
 
 verb_package() {
   case ${1:-} in
-    '' | --quick) make_release_files "$@" ;;
+    '' | --quick) ;;
     *) usage >&2 && exit 2 ;;
   esac
+  make_release_files "$@"
   cat "$(log_of 'Make the release files')"
+  if [ $# -eq 0 ]; then test_release_files; fi
+}
+
+# The suites on the modules that were made; the report names those that ran on each module.
+test_release_files() {
+  basics $BLENDER_PACKAGES
+  python313=$(find_python313)
+  locked "$CACHE/lock" need_bpy
+  use_environment
+  suite 'Python' test_python_on_wheel
+  test_blenders
+  for version in 4.3 5.2; do
+    if has_root "$version"; then
+      need_blender "$version"
+      suite "Blender $version" test_blender "$version"
+    fi
+  done
+  echo "$passed passed, $failed failed"
+  [ "$failed" -eq 0 ]
+  printf %s "$passed_suites" | PYTHONPATH=$ROOT/.dev/packaging xargs -d '\n' \
+    python -m release_files.tested "$ROOT/build/packages/report.json"
+}
+
+test_python_on_wheel() {
+  unpack_wheel cp311
+  export PYTHONPATH="$PACKAGE_BUILD/installed"
+  test_python
+}
+
+# unpack_wheel TAG: what pip would install from the wheel for that CPython, and the demo, in
+# build/package/installed.
+unpack_wheel() {
+  rm -rf "$PACKAGE_BUILD/installed"
+  mkdir -p "$PACKAGE_BUILD/installed"
+  "$VENV/bin/python" -m zipfile -e "$ROOT"/build/packages/*-"$1-$1"-manylinux*.whl \
+    "$PACKAGE_BUILD/installed"
+  ln -s "$ROOT/bindings/sparse_mocap_demo" "$PACKAGE_BUILD/installed/"
 }
 
 # make_release_files [--quick]: in build/packages, checked; with --quick for this machine alone.
@@ -43,7 +81,7 @@ make_release_files() {
 build_and_pack() {
   step 'Gather headers' gather_headers
   for target in "$@"; do
-    locked "$CACHE/lock" need_ceres "$target"
+    locked "$(ceres_of "$target").lock" need_ceres "$target"
     step "Build for $target" for_target "$target" build_modules "$target"
   done
   step 'Make the release files' pack_release_files
@@ -51,7 +89,8 @@ build_and_pack() {
 
 pack_release_files() {
   env PYTHONPATH="$ROOT/.dev/packaging" PYTHONNOUSERSITE=1 "$VENV/bin/python" -m release_files "$ROOT" \
-    --modules "$PACKAGE_BUILD/modules" --pyserial "$ZIG/pyserial" --output "$ROOT/build/packages"
+    --modules "$PACKAGE_BUILD/modules" --pyserial "$ZIG/pyserial" --headers "$PACKAGE_BUILD/python" \
+    --output "$ROOT/build/packages"
 }
 
 # release_file_for VERSION: what that Blender, or module bpy, installs.
