@@ -154,6 +154,9 @@ class LiveReconstructor:
     def history_s(self) -> float:
         """How far back the readings reach that a pose depends on, in s."""
     @property
+    def last_reading_s(self) -> float:
+        """When the last reading was that any sensor was in, in s; -inf before there is one."""
+    @property
     def num_skipped(self) -> int:
         """How many readings were skipped because they came faster than poses could be computed."""
 

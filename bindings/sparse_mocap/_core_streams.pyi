@@ -37,6 +37,12 @@ class StreamParser:
     def counters(self) -> dict[str, int]:
         """What was received and what was lost, each kind by its name."""
     @property
+    def sensor_ids(self) -> list[str]:
+        """What each device calls itself wherever it is plugged in; empty without such."""
+    @property
+    def sensor_batteries(self) -> list[float]:
+        """How full each battery is, in percent; NaN while it is not known."""
+    @property
     def sensor_names(self) -> list[str]:
         """The sensors seen so far, in the order of their indices."""
     @property

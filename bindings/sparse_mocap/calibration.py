@@ -24,7 +24,7 @@ from ._core import (
     site_names,
     standing_pose_names,
 )
-from .take import SensorRecord, Take
+from .take import SensorRecord, Take, devices_of
 
 Floats = NDArray[np.float64]
 Span = tuple[float, float]
@@ -79,6 +79,8 @@ class SensorCalibration:
     """Standard deviation of position_along_bone."""
     notes: tuple[str, ...] = ()
     """What could not be determined, why, and what was taken instead."""
+    device: str = ""
+    """The identity of the device that was calibrated; empty: not known."""
 
 
 @dataclass(frozen=True)
@@ -127,6 +129,7 @@ def calibrate(
     read and what to do; ConfigError for names that are not known.
     """
     worn = _worn_at(take, sites or {})
+    devices = devices_of(take)
     found = {}
     for name, record in take.sensors.items():
         stand = _cut(name, record, steps.stand, "the standing pose")
@@ -136,7 +139,8 @@ def calibrate(
             told = calibrate_sensor(worn[name], steps.pose, stand, moves, height_m, position, body)
         except ConfigError as error:
             raise CalibrationError(f"{name}: {error}") from None
-        found[name] = _at_known_position(worn[name], told, position)
+        calibrated = _at_known_position(worn[name], told, position)
+        found[name] = replace(calibrated, device=devices.get(name, ""))
     return Calibration(found)
 
 
@@ -147,8 +151,9 @@ def apply(calibration: Calibration, take: Take) -> Take:
     calibration.
     """
     sensors = {}
+    devices = devices_of(take)
     for name, record in take.sensors.items():
-        known = _of(calibration, name)
+        known = _of(calibration, name, devices.get(name, ""))
         ideal = _sensor_input(known, ["specific_force"]).corrected(
             record.specific_force, record.angular_velocity, record.orientation
         )
@@ -158,7 +163,8 @@ def apply(calibration: Calibration, take: Take) -> Take:
 
 def positions_along_bone(calibration: Calibration, take: Take) -> list[float]:
     """Returns where on its bone each of the take's sensors sits, in its order."""
-    return [_of(calibration, name).position_along_bone for name in take.sensors]
+    devices = devices_of(take)
+    return [_of(calibration, n, devices.get(n, "")).position_along_bone for n in take.sensors]
 
 
 def sensor_inputs(
@@ -166,12 +172,14 @@ def sensor_inputs(
     names: Sequence[str],
     channels: Sequence[Sequence[str]],
     positions: Mapping[str, float] | None = None,
+    devices: Mapping[str, str] | None = None,
 ) -> list[SensorInput]:
     """Returns sensors of these names as a ReadingStream takes them, with the channels wanted.
 
     Without a calibration they are worn at the ends of their bones, as the sites they are named by
-    ask for; positions along the bone, by site, win over both. Raises CalibrationError when a
-    sensor has no calibration, and ConfigError for an unknown site.
+    ask for; in one they are found by devices, the sensors' identities by name, else by their names.
+    Positions along the bone, by site, win over both. Raises CalibrationError when a sensor has no
+    calibration, and ConfigError for an unknown site.
     """
     pairs = zip(names, channels, strict=True)
     if calibration is None:
@@ -180,7 +188,8 @@ def sensor_inputs(
             SensorInput(name, list(wanted), position_along_bone=along.get(name, 1.0))
             for name, wanted in pairs
         ]
-    return [_sensor_input(_of(calibration, name), wanted, positions) for name, wanted in pairs]
+    known = {name: _of(calibration, name, (devices or {}).get(name, "")) for name in names}
+    return [_sensor_input(known[name], wanted, positions) for name, wanted in pairs]
 
 
 def assign_by_shaking(take: Take, span: Span) -> str:
@@ -271,10 +280,25 @@ def _sensor_input(
     )
 
 
-def _of(calibration: Calibration, name: str) -> SensorCalibration:
+def _of(calibration: Calibration, name: str, device: str = "") -> SensorCalibration:
+    """That of the device, wherever it is plugged in; else that of the name."""
+    own = [known for known in calibration.sensors.values() if device and known.device == device]
+    if own:
+        if name in site_names() and own[0].site != name:
+            raise CalibrationError(
+                f"{device} was calibrated at {own[0].site} and is worn at {name} now: move it "
+                "back, or calibrate again"
+            )
+        return own[0]
     if name not in calibration.sensors:
-        known: Sequence[str] = list(calibration.sensors)
+        known = ", ".join(calibration.sensors)
         raise CalibrationError(
-            f"the calibration has no sensor {name!r}; it has {', '.join(known)}: calibrate again"
+            f"the calibration has no sensor {name!r}; it has {known}: calibrate again"
         )
-    return calibration.sensors[name]
+    found = calibration.sensors[name]
+    if device and found.device:
+        raise CalibrationError(
+            f"{found.device} was calibrated at {name}, and {device} is worn there now: calibrate "
+            "again"
+        )
+    return found

@@ -42,6 +42,7 @@ _DEFAULTS: dict[str, Any] = {
     "axis_ratio": 1.0,
     "position_deviation": 1.0,
     "notes": [],
+    "device": "",
 }
 _LIMITS = {"scale": (0.01, 100.0), "position_along_bone": (0.0, 1.0)}
 
@@ -135,6 +136,10 @@ def _value(path: Path, where: str, key: str, value: Any) -> Any:
         if not isinstance(value, list) or not all(isinstance(note, str) for note in value):
             raise refuse("must be a list of texts")
         return tuple(value)
+    if key == "device":
+        if not isinstance(value, str):
+            raise refuse("must be a text")
+        return value
     if key.startswith("is_"):
         if not isinstance(value, bool):
             raise refuse("must be true or false")

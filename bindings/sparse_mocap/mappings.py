@@ -8,7 +8,6 @@ from the skeleton's joints, and is used for every later file with the same joint
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -21,6 +20,7 @@ from ._core import (
     remembered_mapping_path,
     write_mapping,
 )
+from .settings_folder import settings_folder
 
 __all__ = ["find_mapping", "forget_mapping", "mapping_folder", "remember_mapping", "to_standard"]
 
@@ -29,13 +29,7 @@ def mapping_folder() -> Path:
     """The folder of remembered mappings; the variable SPARSE_MOCAP_MAPPINGS overrides it."""
     if named := os.environ.get("SPARSE_MOCAP_MAPPINGS"):
         return Path(named)
-    if sys.platform == "win32":
-        settings = Path(os.environ.get("APPDATA") or Path.home() / "AppData" / "Roaming")
-    elif sys.platform == "darwin":
-        settings = Path.home() / "Library" / "Application Support"
-    else:
-        settings = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config")
-    return settings / "sparse-mocap" / "mappings"
+    return settings_folder() / "mappings"
 
 
 def remember_mapping(skeleton: Skeleton, joints: Mapping[str, str]) -> Path:

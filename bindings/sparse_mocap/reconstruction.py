@@ -8,18 +8,26 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _core
-from ._core import Model, MotionDatabase, PoseEstimate, Reconstruction, SensorInput, Skeleton
+from ._core import (
+    Model,
+    MotionDatabase,
+    PoseEstimate,
+    Reconstruction,
+    SensorInput,
+    Skeleton,
+    site_names,
+)
 from .calibration import Calibration, sensor_inputs
 from .methods import option_values
 from .readings import channels_in, push_samples
-from .take import Take
+from .take import Take, devices_of
 
 if TYPE_CHECKING:
     from .capture.sample_log import Samples
 
 Progress = Callable[[int, int, str], bool | None]
 
-__all__ = ["LiveReconstructor", "reconstruct"]
+__all__ = ["LiveReconstructor", "reconstruct", "with_locations"]
 
 
 def reconstruct(
@@ -64,6 +72,7 @@ def reconstruct(
         tracker_yaw_rad=tracker_yaw_rad,
         tracker_origin_m=tracker_origin_m,
     )
+    take = with_locations(take, calibration)
     inputs = _inputs(take, calibration, positions_along_bone, use_gyroscopes)
     return _core.reconstruct(
         _recordings(take), inputs, request, best_quality=best_quality, progress=progress
@@ -83,6 +92,7 @@ class LiveReconstructor:
         preset: str | None = None,
         options: Mapping[str, Any] | None = None,
         calibration: Calibration | None = None,
+        devices: Mapping[int, str] | None = None,
         use_gyroscopes: bool = True,
         model: Model | None = None,
         body: Skeleton | None = None,
@@ -92,7 +102,8 @@ class LiveReconstructor:
     ) -> None:
         """Takes the capture's numbers of the sensors and their names, and what each measures.
 
-        Without a calibration the names are sites. channels (of CHANNEL_NAMES) come in the order of
+        Without a calibration the names are sites; in one, sensors are found by the identities in
+        devices, by the same numbers. channels (of CHANNEL_NAMES) come in the order of
         sensors. largest_backlog: of more readings than this that wait only the newest is used, so
         that a slow machine stays in time; 0: all are. The rest is as in reconstruct(). Raises
         ConfigError and CalibrationError.
@@ -108,7 +119,9 @@ class LiveReconstructor:
             tracker_origin_m=tracker_origin_m,
         )
         used = [_used(measured, use_gyroscopes) for measured in channels]
-        inputs = sensor_inputs(calibration, list(sensors.values()), used)
+        names = list(sensors.values())
+        identities = {sensors[number]: own for number, own in (devices or {}).items()}
+        inputs = sensor_inputs(calibration, names, used, devices=identities)
         self._numbers = list(sensors)
         self.sensors: tuple[SensorInput, ...] = tuple(inputs)
         """Where the sensors are worn and how they are corrected, in the order of the numbers."""
@@ -142,9 +155,42 @@ class LiveReconstructor:
         return self._live.latency_s
 
     @property
+    def last_reading_s(self) -> float:
+        """When the last reading was that any sensor was in, on the machine's monotonic clock.
+
+        Minus infinity before there is one. While it stays behind, poses are guesses.
+        """
+        return self._live.last_reading_s
+
+    @property
     def num_skipped(self) -> int:
         """Readings that came faster than poses could be made of them."""
         return self._live.num_skipped
+
+
+def with_locations(take: Take, calibration: Calibration | None) -> Take:
+    """Returns the take without sensors that were recorded under their identities alone.
+
+    Nobody said where these are worn. Raises ConfigError when no other is left.
+    """
+    devices = devices_of(take)
+    calibrated = (
+        {*calibration.sensors, *(s.device for s in calibration.sensors.values())}
+        if (calibration)
+        else set()
+    )
+    sensors = {
+        name: record
+        for name, record in take.sensors.items()
+        if name in site_names() or name in calibrated or devices.get(name) != name
+    }
+    if not sensors:
+        first = next(iter(take.sensors))
+        raise _core.ConfigError(
+            f"the take does not say where its sensors are worn: {', '.join(take.sensors)}; give it "
+            f"with `sparse-mocap import TAKE.csv -o NAMED.csv --site '{first}=left_wrist'`"
+        )
+    return Take(sensors, take.comments)
 
 
 def _request(
@@ -174,7 +220,7 @@ def _inputs(
     use_gyroscopes: bool,
 ) -> list[SensorInput]:
     channels = [_used(channels_in(record), use_gyroscopes) for record in take.sensors.values()]
-    return sensor_inputs(calibration, take.sites, channels, positions_along_bone)
+    return sensor_inputs(calibration, take.sites, channels, positions_along_bone, devices_of(take))
 
 
 def _recordings(take: Take) -> list[_core.SensorRecording]:

@@ -17,7 +17,16 @@ from .take_file import read_columns, write_columns
 Floats = NDArray[np.float64]
 Path = str | os.PathLike[str]
 
-__all__ = ["SensorRecord", "Take", "TakeError", "read_take", "simulated", "write_take"]
+__all__ = [
+    "SensorRecord",
+    "Take",
+    "TakeError",
+    "device_comment",
+    "devices_of",
+    "read_take",
+    "simulated",
+    "write_take",
+]
 
 
 @dataclass(frozen=True)
@@ -58,6 +67,24 @@ class Take:
     def end_s(self) -> float:
         """When the last sensor ends."""
         return max(float(record.times_s[-1]) for record in self.sensors.values())
+
+
+_DEVICE = "device of "
+
+
+def device_comment(name: str, identity: str) -> str:
+    """Returns the comment that says which device a take's sensor was."""
+    return f"{_DEVICE}{name}: {identity}"
+
+
+def devices_of(take: Take) -> dict[str, str]:
+    """Returns the identities of the devices that a take's sensors were, as far as it says."""
+    devices = {}
+    for comment in take.comments:
+        name, colon, identity = comment.removeprefix(_DEVICE).partition(": ")
+        if comment.startswith(_DEVICE) and colon and name in take.sensors:
+            devices[name] = identity.strip()
+    return devices
 
 
 def read_take(path: Path) -> Take:

@@ -188,6 +188,9 @@ cannot use.)doc")
           "history_s", [](BoundLive& b) { return b.live().history_s(); },
           "How far back the readings reach that a pose depends on, in s.")
       .def_property_readonly(
+          "last_reading_s", [](BoundLive& b) { return b.live().last_reading_s(); },
+          "When the last reading was that any sensor was in, in s; -inf before there is one.")
+      .def_property_readonly(
           "num_skipped", [](BoundLive& b) { return b.live().num_skipped(); },
           "How many readings were skipped because they came faster than poses could be computed.");
 }

@@ -196,6 +196,16 @@ With a sender the data are one datagram.)doc")
           [](Shared& shared) { return asked(shared, [](auto& p) { return p.sensor_names(); }); },
           "The sensors seen so far, in the order of their indices.")
       .def_property_readonly(
+          "sensor_ids",
+          [](Shared& shared) { return asked(shared, [](auto& p) { return p.sensor_ids(); }); },
+          "What each device calls itself wherever it is plugged in; empty without such.")
+      .def_property_readonly(
+          "sensor_batteries",
+          [](Shared& shared) {
+            return asked(shared, [](auto& p) { return p.sensor_batteries(); });
+          },
+          "How full each battery is, in percent; NaN while it is not known.")
+      .def_property_readonly(
           "last_message",
           [](Shared& shared) { return asked(shared, [](auto& p) { return p.last_message(); }); },
           "The last text from the device, such as an error.");

@@ -17,6 +17,7 @@ from typing import Any
 
 from ..files import write_text
 from .config import CONFIG_NAME, DEFAULT_BAUD, CaptureConfig, LinkConfig
+from .diagnosis import check_bandwidth
 from .drivers import make_parser
 from .errors import CaptureError, recover_command
 from .runtime_folder import runtime_folder
@@ -26,6 +27,8 @@ from .session import Connection, Session, read_session, session_path, sessions
 __all__ = ["CaptureClient", "start_capture"]
 
 START_TIMEOUT_S = 20.0
+OTHERS_S = 4.0
+"""How long links that deliver wait for those that do not; by then these have a message."""
 OUTPUT_NAME = "output.log"
 
 
@@ -93,15 +96,19 @@ class CaptureClient:
     def wait_for_samples(self, timeout_s: float) -> dict[str, Any]:
         """Waits until every link delivers samples, and returns the status.
 
-        Raises CaptureError with the reason of a link that failed, or after the timeout.
+        It does not wait for long when only some links deliver: the others' messages say why. Raises
+        CaptureError with the reason of a link that failed, or when none delivers after the timeout.
         """
-        end = time.perf_counter() + timeout_s
+        begin = time.perf_counter()
         while True:
             status = self.status()
             links = status["links"]
             failed = [link for link in links if link["state"] == "failed"]
             waiting = [link for link in links if link["state"] != "streaming"]
-            if failed or (waiting and time.perf_counter() > end):
+            waited_s = time.perf_counter() - begin
+            if not failed and len(waiting) < len(links) and waited_s > min(OTHERS_S, timeout_s):
+                return status
+            if failed or (waiting and waited_s > timeout_s):
                 link = (failed or waiting)[0]
                 reason = (
                     link["message"]
@@ -122,6 +129,10 @@ class CaptureClient:
     def stop_recording(self) -> None:
         """Stops the recording."""
         self._ask("stop_recording")
+
+    def set_sites(self, site_of: Mapping[str, str]) -> None:
+        """Says where sensors are worn, by their identities; an empty site: nowhere."""
+        self._ask("sites", site_of=dict(site_of))
 
     def tell_saved(self, number: int) -> None:
         """Says that a recording was saved as a take.
@@ -189,6 +200,7 @@ def start_capture(config: CaptureConfig, folder: Path) -> CaptureClient:
     importlib.import_module("serial")
     for link in config.links:
         make_parser(link.driver, link.options)
+        check_bandwidth(link)
     runtime_folder()
     folder = folder.absolute()
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)

@@ -20,6 +20,7 @@ class LinkConfig:
     port: str
     driver: str
     baud: int = DEFAULT_BAUD
+    """0: the usual ones are tried in turn until there are samples."""
     options: Mapping[str, str] = field(default_factory=dict)
     """Options of the driver."""
 
@@ -30,7 +31,10 @@ class CaptureConfig:
 
     links: tuple[LinkConfig, ...]
     sites: tuple[str, ...] = ()
-    """Sensor locations, in the order of the capture's sensors; empty: by the sensors' names."""
+    """Sensor locations, in the order of the links and of each link's sensors: as its device numbers
+    them, else by their identities."""
+    site_of: Mapping[str, str] = field(default_factory=dict)
+    """Sensor locations by the sensors' identities or names; they win over sites."""
     linger_s: float = 5.0
     """The capture ends after this time without clients and recordings."""
     must_record: bool = False

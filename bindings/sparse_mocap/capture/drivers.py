@@ -8,19 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from .. import ConfigError, StreamEncoder, StreamParser, site_names
+from .. import ConfigError, StreamEncoder, StreamParser
 from .. import driver_names as driver_names
 from .. import keep_alive_commands as _keep_alive_commands
 from .. import start_commands as _start_commands
 from .sample_log import SAMPLE, Samples
 
 __all__ = [
+    "KEEP_ALIVE_S",
+    "START_PAUSE_S",
     "Encoder",
     "can_share_a_port",
     "keep_alive_commands",
     "make_parser",
     "parsed",
-    "site_order",
     "start_commands",
     "with_rate",
 ]
@@ -28,15 +29,15 @@ __all__ = [
 DATAGRAM_DRIVERS = ("slimevr",)
 """On a serial port their datagrams are sent as [u16 length, big-endian][datagram]."""
 
-_USUAL_SITES = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
+KEEP_ALIVE_S = {"slimevr": 0.04}
+"""How often a driver's devices must be written to; otherwise every second. A tracker that is still
+sends nothing but answers to this."""
+START_PAUSE_S = {"witmotion": 0.1, "witmotion_ble": 0.1}
+"""What a device needs between two commands."""
+
 _SAME_NAMES = (
     "sensor", "counter", "flags", "specific_force", "angular_velocity", "orientation",
 )  # fmt: skip
-
-
-def site_order() -> list[str]:
-    """All sites, in the order in which they are assumed for sensors without a location."""
-    return [*_USUAL_SITES, *(site for site in site_names() if site not in _USUAL_SITES)]
 
 
 def make_parser(driver: str, options: Mapping[str, str]) -> StreamParser:

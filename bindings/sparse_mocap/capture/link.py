@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from queue import Empty, SimpleQueue
 from typing import Any, Protocol
 
 from .config import LinkConfig
+from .diagnosis import why_no_bytes, why_no_samples
+from .drivers import KEEP_ALIVE_S, START_PAUSE_S
 from .errors import LogError, PortError
 from .ports import PORT_ERRORS, READ_TIMEOUT_S, PortInfo, device_at, open_port, port_of
 
@@ -27,9 +30,17 @@ STALL_S = 1.0
 """Without a sample for this long a link is stalled."""
 REOPEN_S = 5.0
 """Without a byte for this long the port is opened again: some adapters hang without an error."""
-UNDECODED_S = 3.0
-"""Bytes without a sample for this long mean a wrong driver or baud rate."""
-KEEP_ALIVE_S = 1.0
+UNDECODED_S = 2.0
+"""Without a sample for this long the message says why, as far as the data shows it."""
+USUAL_BAUDS = (115200, 9600, 57600, 38400, 230400, 460800, 921600, 19200)
+TRY_BAUD_S = 1.5
+"""How long each is tried when the baud rate is not known."""
+GIVE_UP_S = 60.0
+"""A port that is gone for so long and whose device cannot be recognised elsewhere has failed."""
+_USUAL_KEEP_ALIVE_S = 1.0
+_MAY_REST = ("slimevr",)
+"""Drivers whose devices send nothing while they are still."""
+_MOST_KEPT = 100  # reads, to explain why they give no samples
 LONGEST_READ = 4096
 MOST_WAITING = 10_000
 """Reads that may wait for a slow disk."""
@@ -59,8 +70,8 @@ class Arrived:
 class Sink(Protocol):
     """Receives the data of a link. Called from the link's thread."""
 
-    def connected(self, link: int, port: str) -> tuple[bytes, ...]:
-        """The port was opened; returns the start commands."""
+    def connected(self, link: int, port: str, device: str) -> tuple[bytes, ...]:
+        """The port was opened; returns the start commands. device: its USB adapter's identity."""
 
     def keep_alive(self, link: int) -> tuple[bytes, ...]:
         """What must be sent to the device every second."""
@@ -90,10 +101,16 @@ class Link:
     state: State = State.DISCONNECTED
     message: str = ""
     opened_as: str = ""
+    baud: int = 0
+    """The speed that is used or tried."""
     num_bytes: int = 0
     num_reconnects: int = 0
     _device: PortInfo | None = None
     _was_open: bool = False
+    _has_streamed: bool = False
+    _num_tried: int = 0
+    _next_reason_s: float = 0.0
+    _kept: deque[bytes] = field(default_factory=lambda: deque(maxlen=_MOST_KEPT))
     _stop: threading.Event = field(default_factory=threading.Event)
     _thread: threading.Thread | None = None
 
@@ -109,15 +126,17 @@ class Link:
             self._thread.join(timeout=10.0)
 
     def _run(self) -> None:
-        backoff_s = FIRST_BACKOFF_S
+        backoff_s, gone_since_s = FIRST_BACKOFF_S, None
         while not self._stop.is_set():
             try:
                 port = self._opened()
+                gone_since_s = None
                 reason = self._handled(port)
                 backoff_s = FIRST_BACKOFF_S
             except PortError as error:
                 reason = str(error)
-                if not self._was_open:
+                gone_since_s = gone_since_s or time.perf_counter()
+                if not self._was_open or self._is_lost(time.perf_counter() - gone_since_s):
                     return self._enter(State.FAILED, reason)
             except LogError as error:
                 return self._enter(State.FAILED, str(error))
@@ -135,17 +154,37 @@ class Link:
         if not self._was_open:
             self._enter(State.OPENING)
         name = self.name_of(self.config.port, self._device)
-        port = self.opener(name, self.config.baud)
+        self.baud = self.config.baud or USUAL_BAUDS[self._num_tried % len(USUAL_BAUDS)]
+        found = self.device_of(name)
+        if (
+            self._device is not None
+            and found is not None
+            and not found.is_same_device(self._device)
+        ):
+            raise PortError(
+                f"{name}: another device is plugged in there; plug {self._device.identity} in again"
+            )
+        port = self.opener(name, self.baud)
         self.num_reconnects += self._was_open
         self._was_open, self.opened_as = True, name
-        self._device = self.device_of(name) or self._device
+        self._device = found or self._device
         return port
+
+    def _is_lost(self, gone_s: float) -> bool:
+        """Whether waiting for the port is in vain: only its name would tell its return."""
+        return self._device is None and "://" not in self.config.port and gone_s > GIVE_UP_S
 
     def _handled(self, port: Any) -> str:
         """Handles an open port and returns why it was closed."""
         try:
             self._enter(State.CONFIGURING)
-            self._write(port, self.sink.connected(self.index, self.opened_as))
+            self._kept.clear()
+            self._write(
+                port,
+                self.sink.connected(
+                    self.index, self.opened_as, self._device.identity if self._device else ""
+                ),
+            )
             return self._read(port)
         except PORT_ERRORS as error:
             return f"{self.opened_as}: the connection was lost ({_short(error)}); plug it in again"
@@ -167,42 +206,72 @@ class Link:
         return reason
 
     def _handle(self, port: Any, inbox: SimpleQueue[_Item | Exception]) -> str:
-        last_byte_s = last_sample_s = last_keep_alive_s = time.perf_counter()
+        keep_alive_s = KEEP_ALIVE_S.get(self.config.driver, _USUAL_KEEP_ALIVE_S)
+        timeout_s = min(READ_TIMEOUT_S, keep_alive_s)
+        opened_s = time.perf_counter()
+        last_byte_s = last_sample_s = last_keep_alive_s = opened_s
         while not self._stop.is_set():
-            item = _next(inbox)
+            item = _next(inbox, timeout_s)
             if isinstance(item, Exception):
                 raise item
             if item is not None:
                 last_byte_s = item.arrival_ns * 1e-9
-                self.num_bytes += len(item.data)
-                came = self.sink.arrived(self.index, item.arrival_ns, item.data, item.sender)
-                self._write(port, came.replies, item.sender)
-                if came.num_samples:
+                if self._take(port, item):
                     last_sample_s = last_byte_s
-                    self._enter(State.STREAMING)
             now_s = last_byte_s if item is not None else time.perf_counter()
-            if now_s - last_keep_alive_s > KEEP_ALIVE_S:
+            if now_s - last_keep_alive_s > keep_alive_s:
                 last_keep_alive_s = now_s
                 self._write(port, self.sink.keep_alive(self.index))
-            if now_s - last_byte_s > REOPEN_S:
-                return f"{self.opened_as}: no data for {REOPEN_S:g} s; check that the device is on"
+            if self._must_try_next_baud(now_s - opened_s):
+                return f"{self.opened_as}: no samples at {self.baud} baud; trying another rate"
+            if now_s - last_byte_s > REOPEN_S and not self._is_socket:
+                return f"{self.opened_as}: {why_no_bytes(self.config)}"
             self._report_silence(now_s - last_byte_s, now_s - last_sample_s)
         return ""
 
+    def _take(self, port: Any, item: _Item) -> bool:
+        """Passes on what was read; returns whether there were samples in it."""
+        self.num_bytes += len(item.data)
+        came = self.sink.arrived(self.index, item.arrival_ns, item.data, item.sender)
+        self._write(port, came.replies, item.sender)
+        if not came.num_samples:
+            self._kept.append(item.data)
+            return False
+        self._kept.clear()
+        self._has_streamed = True
+        self._enter(State.STREAMING)
+        return True
+
+    @property
+    def _is_socket(self) -> bool:
+        """A socket cannot hang as an adapter does, so there is no use in opening it again."""
+        return self.config.port.startswith("udp://")
+
+    def _must_try_next_baud(self, open_s: float) -> bool:
+        if self.config.baud or self._has_streamed or open_s < TRY_BAUD_S:
+            return False
+        self._num_tried += 1
+        return True
+
     def _report_silence(self, without_byte_s: float, without_sample_s: float) -> None:
-        if without_sample_s < STALL_S:
+        if without_sample_s < STALL_S or (self._has_streamed and self.config.driver in _MAY_REST):
             return
         if self.state is State.STREAMING:
             self._enter(State.STALLED, f"{self.opened_as}: no data for {STALL_S:g} s")
-        elif without_sample_s > UNDECODED_S and without_byte_s < STALL_S:
-            self._enter(
-                self.state,
-                f"{self.opened_as}: receiving data, but not in the protocol "
-                f"{self.config.driver}; check the driver and the baud rate ({self.config.baud})",
+        elif without_sample_s > UNDECODED_S and time.perf_counter() > self._next_reason_s:
+            self._next_reason_s = time.perf_counter() + 1.0
+            why = (
+                why_no_samples(replace(self.config, baud=self.baud), list(self._kept))
+                if self._kept and without_byte_s < UNDECODED_S
+                else why_no_bytes(self.config)
             )
+            self._enter(self.state, f"{self.opened_as}: {why}")
 
     def _write(self, port: Any, packets: tuple[bytes, ...], receiver: str = "") -> None:
-        for packet in packets:
+        pause_s = START_PAUSE_S.get(self.config.driver, 0.0)
+        for index, packet in enumerate(packets):
+            if pause_s and index:
+                self._stop.wait(pause_s)
             if receiver:
                 port.send_to(receiver, packet)
             else:

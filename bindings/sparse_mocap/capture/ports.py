@@ -62,6 +62,15 @@ class PortInfo:
             return self.serial_number == other.serial_number
         return self.location == other.location
 
+    @property
+    def identity(self) -> str:
+        """What tells the device from others wherever it is plugged in; else where that is."""
+        if self.serial_number:
+            return self.serial_number
+        if self.vendor_id is None:
+            return ""
+        return f"{self.vendor_id:04x}:{self.product_id or 0:04x} at {self.location}"
+
     def as_json(self) -> dict[str, Any]:
         """As a JSON object."""
         return asdict(self)

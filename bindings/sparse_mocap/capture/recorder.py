@@ -6,6 +6,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -78,11 +79,18 @@ class Recorder:
             self._raw.close()
             self._log.close()
 
-    def connected(self, link: int, port: str) -> tuple[bytes, ...]:
+    def connected(self, link: int, port: str, device: str = "") -> tuple[bytes, ...]:
         """A link's port was opened."""
         with self._lock:
-            now_ns = self._event(link, {"event": "connected", "port": port})
-            return self._decoder.connected(link, now_ns)
+            now_ns = self._event(link, {"event": "connected", "port": port, "device": device})
+            return self._decoder.connected(link, now_ns, device)
+
+    def set_sites(self, site_of: Mapping[str, str]) -> None:
+        """Says where sensors are worn, by their identities. Raises LogError."""
+        with self._lock:
+            self.config = self._decoder.set_sites(site_of)
+            self._raw.about["config"] = self.config.as_json()
+            self._event(0, {"event": "sites", "site_of": dict(site_of)})
 
     def keep_alive(self, link: int) -> tuple[bytes, ...]:
         """What must be sent to the link's device every second."""
@@ -175,7 +183,7 @@ class Recorder:
                 "samples": self._log.num_samples,
                 "recordings": self.num_recordings,
                 "recording": self._recording_json() if self.recording else None,
-                "are_sites_guessed": self._decoder.are_sites_guessed,
+                "notes": list(self._decoder.sites.conflicts),
                 "links": [self._link_json(link) for link in self.links],
                 "sensors": [
                     self._sensor_json(i, now_ns) for i in range(len(self._decoder.sensors))
@@ -246,7 +254,9 @@ class Recorder:
     def _sensor_json(self, index: int, now_ns: int) -> dict[str, Any]:
         sensor, last = self._decoder.sensors[index], self._last.get(index)
         status: dict[str, Any] = {
-            "name": sensor.name, "site": self._decoder.sites[index], "link": sensor.link,
+            "name": sensor.name, "identity": sensor.identity, "is_shared": sensor.is_shared,
+            "site": self._decoder.sites.sites[index], "link": sensor.link,
+            "is_replaced": sensor.replaced_by is not None, "battery": self._decoder.battery(index),
             "samples": self._num_of.get(index, 0), "missing": sensor.num_missing,
             "rate_hz": self._rate(index), "age_s": None, "specific_force": None,
             "state": "silent", "flags": 0, "has_gyroscope": index in self._with_gyroscope,

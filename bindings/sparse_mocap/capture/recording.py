@@ -4,14 +4,15 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import LARGEST_CLOCK_DRIFT, host_times
-from ..take import SensorRecord, Take
+from .. import LARGEST_CLOCK_DRIFT, host_times, site_names
+from ..take import SensorRecord, Take, device_comment
 from .config import CaptureConfig
 from .decoder import Decoder
 from .errors import RecordingError
@@ -22,6 +23,7 @@ __all__ = ["Gap", "RecordedTake", "recording_to_take"]
 
 Floats = NDArray[np.float64]
 
+_MOST_LINKS = 256
 GAP_S = 0.25
 """A pause of a sensor longer than this is reported."""
 
@@ -44,10 +46,12 @@ class RecordedTake:
 
     take: Take
     gaps: tuple[Gap, ...]
-    names: tuple[str, ...]
-    """The devices' names, in the take's order."""
-    are_sites_guessed: bool
-    """The sensor locations are assumed from the order of the devices."""
+    identities: tuple[str, ...]
+    """The devices' identities, in the take's order."""
+    conflicts: tuple[str, ...]
+    """Sites that several sensors have; these were recorded under their identities."""
+    unknown: tuple[str, ...]
+    """Names that were given a site and that no sensor has."""
     clock_rates: tuple[float, ...]
     """Seconds of this machine per second of each sensor's device."""
     num_missing: int
@@ -59,10 +63,16 @@ class RecordedTake:
     def warnings(self) -> list[str]:
         """Warnings for the user, one line each."""
         lines = [str(gap) for gap in self.gaps]
-        if self.are_sites_guessed:
-            pairs = zip(self.take.sites, self.names, strict=True)
-            assumed = ", ".join(f"{name} on {site}" for site, name in pairs)
-            lines.append(f"sensor locations not given, assuming {assumed}; see --sites")
+        lines += self.conflicts
+        known = site_names()
+        unnamed = [] if self.conflicts else [n for n in self.take.sites if n not in known]
+        if unnamed:
+            lines.append(
+                f"no sensor location is known for {', '.join(unnamed)}; recorded under that name, "
+                f"give it with --site '{unnamed[0]}=left_wrist'"
+            )
+        for name in self.unknown:
+            lines.append(f"there is no sensor {name!r}; there are {', '.join(self.identities)}")
         if self.num_missing:
             lines.append(f"{self.num_missing} samples were lost on the way from the sensors")
         odd = [rate for rate in self.clock_rates if abs(rate - 1.0) > LARGEST_CLOCK_DRIFT]
@@ -81,7 +91,7 @@ class _Replay:
     decoder: Decoder
     parts: list[Samples] = field(default_factory=list)
     epochs: list[NDArray[np.int64]] = field(default_factory=list)
-    """For each sample, the number of its link's connection (1, 2, ...)."""
+    """For each sample, its link and the number of that link's connection."""
     begins_ns: list[int] = field(default_factory=list)
     ends_ns: dict[int, int] = field(default_factory=dict)
     is_repeated: bool = False
@@ -98,7 +108,8 @@ class _Replay:
         if self.is_repeated:
             return
         self.parts.append(samples)
-        self.epochs.append(np.full(len(samples), self._connections.get(record.link, 0)))
+        connection = self._connections.get(record.link, 0)
+        self.epochs.append(np.full(len(samples), connection * _MOST_LINKS + record.link))
 
     def _replay_event(self, record: Record) -> None:
         event = record.event
@@ -109,8 +120,11 @@ class _Replay:
             self.is_repeated = False
             self.decoder.interrupted()
         elif what == "connected":
-            self.decoder.connected(record.link, record.arrival_ns)
+            device = str(event.get("device", ""))
+            self.decoder.connected(record.link, record.arrival_ns, device)
             self._connections[record.link] = self._connections.get(record.link, 0) + 1
+        elif what == "sites":
+            self.config = self.decoder.set_sites(event["site_of"])
         elif what == "recording":
             self.begins_ns.append(record.arrival_ns)
         elif what == "recording_end":
@@ -118,38 +132,49 @@ class _Replay:
 
 
 def recording_to_take(
-    folder: str | os.PathLike[str], number: int | None = None, sites: tuple[str, ...] = ()
+    folder: str | os.PathLike[str],
+    number: int | None = None,
+    sites: tuple[str, ...] = (),
+    site_of: Mapping[str, str] | None = None,
 ) -> RecordedTake:
     """Returns a recording of the capture in a folder, by default the last one.
 
-    For a capture without a recording, returns everything. ``sites``: sensor locations in the order
-    of the sensors, if the capture was started without. Raises RecordingError and OSError.
+    For a capture without a recording, returns everything. ``sites`` and ``site_of`` say where
+    sensors are worn as in CaptureConfig, and win over what the capture was told. A sensor without
+    a site is named by its identity. Raises RecordingError and OSError.
     """
     replay = _replayed(Path(folder), sites)
     decoder = replay.decoder
+    decoder.set_sites(site_of or {})
     samples = np.concatenate([np.empty(0, SAMPLE), *replay.parts])
     epochs = np.concatenate([np.empty(0, np.int64), *replay.epochs])
     bounds_ns = _bounds(replay, folder, number)
+    for index, sensor in enumerate(decoder.sensors):
+        if sensor.replaced_by is not None:
+            samples["sensor"][samples["sensor"] == index] = sensor.replaced_by
+    where = decoder.sites
     tracks: dict[str, _SensorTrack] = {}
     for index in decoder.order:
+        identity = decoder.sensors[index].identity
         own = (samples["sensor"] == index) & np.isfinite(samples["specific_force"]).all(axis=1)
-        track = _track(samples[own], epochs[own], bounds_ns, decoder.sensors[index].name)
+        track = _track(samples[own], epochs[own], bounds_ns, identity)
         if len(track.times_s):
-            tracks[decoder.sites[index]] = track
+            tracks[where.name(index, identity)] = track
     if not tracks:
         raise RecordingError(f"{folder}: no samples were recorded; check ports and drivers")
     begin_s = min(float(track.times_s[0]) for track in tracks.values())
     gaps = [gap for site, track in tracks.items() for gap in _gaps(site, track.times_s - begin_s)]
     about = (
         f"recorded with {', '.join(dict.fromkeys(link.driver for link in replay.config.links))}",
-        "sensors: " + ", ".join(f"{site} is {track.name}" for site, track in tracks.items()),
+        *(device_comment(name, track.identity) for name, track in tracks.items()),
         *(str(gap) for gap in gaps),
     )
     return RecordedTake(
         Take({site: track.record(begin_s) for site, track in tracks.items()}, about),
         tuple(gaps),
-        tuple(track.name for track in tracks.values()),
-        decoder.are_sites_guessed,
+        tuple(track.identity for track in tracks.values()),
+        where.conflicts,
+        where.unknown,
         tuple(track.clock_rate for track in tracks.values()),
         sum(sensor.num_missing for sensor in decoder.sensors),
         round(begin_s * 1e9),
@@ -196,7 +221,7 @@ def _bounds(replay: _Replay, folder: str | os.PathLike[str], number: int | None)
 class _SensorTrack:
     """One sensor's samples in the recording."""
 
-    name: str
+    identity: str
     times_s: Floats
     """On this machine's monotonic clock."""
     samples: Samples
@@ -216,17 +241,19 @@ class _SensorTrack:
 
 
 def _track(
-    samples: Samples, epochs: NDArray[np.int64], bounds_ns: tuple[int, int], name: str
+    samples: Samples, epochs: NDArray[np.int64], bounds_ns: tuple[int, int], identity: str
 ) -> _SensorTrack:
     """Estimates clocks from all samples of a sensor, and keeps those of the recording."""
     times_s, rate = np.empty(len(samples)), 1.0
     arrival_s = samples["arrival_ns"] * 1e-9
+    order = np.argsort(samples["arrival_ns"], kind="stable")  # two ports may have had the sensor
+    samples, epochs, arrival_s = samples[order], epochs[order], arrival_s[order]
     for epoch in np.unique(epochs):  # the device's clock may restart with each connection
         own = epochs == epoch
         times_s[own], rate = host_times(samples["device_time_s"][own], arrival_s[own])
     times_s = np.maximum.accumulate(times_s)
     is_in = (samples["arrival_ns"] >= bounds_ns[0]) & (samples["arrival_ns"] <= bounds_ns[1])
-    return _SensorTrack(name, times_s[is_in], samples[is_in], rate)
+    return _SensorTrack(identity, times_s[is_in], samples[is_in], rate)
 
 
 def _gaps(site: str, times_s: Floats) -> list[Gap]:

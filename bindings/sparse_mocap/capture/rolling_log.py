@@ -43,7 +43,7 @@ class RollingLog:
 
     def __init__(self, folder: Path, about: dict[str, Any]) -> None:
         """about: the event at the start of every file."""
-        self._folder, self._about = folder, about
+        self._folder, self.about = folder, about
         self._writer = RawLogWriter(folder)
         self._writer.append_event(0, time.perf_counter_ns(), about)
         self._begins: dict[int, _Begin] = {}
@@ -120,7 +120,7 @@ class RollingLog:
 
     def _repeat(self, writer: RawLogWriter) -> None:
         now_ns = time.perf_counter_ns()
-        writer.append_event(0, now_ns, {**self._about, "is_later": True})
+        writer.append_event(0, now_ns, {**self.about, "is_later": True})
         for link, begin in self._begins.items():
             writer.append_event(link, begin.opened_ns, begin.event)
             for record in begin.records:

@@ -182,6 +182,9 @@ class Server:
         if what == "saved":
             self._recorder.tell_saved(int(request["number"]))
             return {}
+        if what == "sites":
+            self._recorder.set_sites(_texts(request["site_of"]))
+            return {}
         if what == "stop":
             self.must_end = True
             return {}
@@ -198,3 +201,7 @@ class Server:
         self._selector.close()
         self._listener.close()
         self._file.remove()
+
+
+def _texts(value: Any) -> dict[str, str]:
+    return {str(name): str(text) for name, text in dict(value).items()}

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import socket
+from contextlib import suppress
 from urllib.parse import urlsplit
 
 __all__ = ["UdpPort"]
@@ -11,6 +12,7 @@ __all__ = ["UdpPort"]
 SCHEME = "udp://"
 _LONGEST_DATAGRAM = 65_536
 _MOST_SENDERS = 64
+"""Those that were silent for longest go first."""
 
 
 class UdpPort:
@@ -30,6 +32,7 @@ class UdpPort:
             self._socket.close()
             raise
         self._senders: dict[str, tuple[str, int]] = {}
+        self._answered: set[str] = set()
         self.sender = ""
         """Sender of the datagram that was just read; empty without one."""
 
@@ -42,20 +45,27 @@ class UdpPort:
             self.sender = ""
             return b""
         self.sender = f"{address[0]}:{address[1]}"
-        if len(self._senders) < _MOST_SENDERS:
-            self._senders[self.sender] = address
+        self._senders.pop(self.sender, None)
+        if len(self._senders) >= _MOST_SENDERS:
+            silent = next(iter(self._senders))
+            self._senders.pop(silent)
+            self._answered.discard(silent)
+        self._senders[self.sender] = address
         return data
 
     def write(self, data: bytes) -> int:
-        """Sends a datagram to every sender so far."""
-        for sender in tuple(self._senders):
+        """Sends a datagram to every sender that was answered before; strangers get none."""
+        for sender in tuple(self._answered):
             self.send_to(sender, data)
         return len(data)
 
     def send_to(self, receiver: str, data: bytes) -> None:
-        """Sends a datagram to one of the senders."""
-        if receiver in self._senders:
-            self._socket.sendto(data, self._senders[receiver])
+        """Sends a datagram to one of the senders; one that cannot be sent is lost, as on radio."""
+        address = self._senders.get(receiver)
+        if address is not None:
+            self._answered.add(receiver)
+            with suppress(OSError):  # a sender may be gone, or have had no port
+                self._socket.sendto(data, address)
 
     def close(self) -> None:
         """Stops listening."""

@@ -8,11 +8,13 @@ from typing import Any
 
 import click
 
+from ..capture.client import CaptureClient
 from ..capture.config import DEFAULT_BAUD, CaptureConfig, LinkConfig
 from ..capture.drivers import driver_names
-from .options import Decorator, Sites
+from ..capture.remembered_sites import remember_sites, remembered_sites
+from .options import Decorator, SensorSite, Sites
 
-__all__ = ["Span", "capture_options", "config_of"]
+__all__ = ["Span", "capture_options", "config_of", "remember"]
 
 
 class Span(click.ParamType):  # type: ignore[type-arg]
@@ -72,19 +74,40 @@ driver_options_option: Decorator = click.option(
 )  # fmt: skip
 
 
+def _as_sites(
+    _ctx: click.Context, _param: click.Parameter, value: tuple[tuple[str, str], ...]
+) -> dict[str, str]:
+    sites = dict(value)
+    for site in sites.values():
+        twins = [name for name, other in sites.items() if other == site]
+        if len(twins) > 1:
+            raise click.BadParameter(f"{' and '.join(twins)} are both worn at {site}")
+    return sites
+
+
 def capture_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Adds the options of a capture."""
     for option in (
         click.option(
             "--sites", type=Sites(), default=None,
-            help="Sensor locations, in the order of the sensors.",
+            help="Sensor locations, in the order of the ports and of the sensors' own numbers; "
+            "--site is surer.",
+        ),
+        click.option(
+            "--site", "site_of", type=SensorSite(), multiple=True, callback=_as_sites,
+            help="Where a sensor is worn, by its name or number, as in 'DB0001=left_wrist'. Can be "
+            "repeated; remembered for the next time.",
         ),
         driver_options_option,
         click.option(
-            "--baud", type=click.IntRange(50, 4_000_000), default=DEFAULT_BAUD, show_default=True,
-            help="Speed of the serial port, in bits per second.",
+            "--baud", type=click.IntRange(0, 4_000_000), default=DEFAULT_BAUD, show_default=True,
+            help="Speed of the serial port, in bits per second; 0 tries the usual ones.",
         ),
-        click.option("--driver", type=click.Choice(driver_names()), help=_DRIVER_HELP),
+        click.option(
+            "--driver", "drivers", type=click.Choice(driver_names()), multiple=True,
+            help=f"{_DRIVER_HELP} Can be repeated, one for each port. `sparse-mocap drivers` "
+            "lists them.",
+        ),
         click.option(
             "--port", "ports", metavar="PORT_OR_URL", multiple=True,
             help="A serial port, pyserial URL or udp://HOST:PORT. Can be repeated.",
@@ -96,16 +119,43 @@ def capture_options(function: Callable[..., Any]) -> Callable[..., Any]:
 
 def config_of(
     ports: tuple[str, ...],
-    driver: str | None,
+    drivers: tuple[str, ...],
     baud: int,
     options: dict[str, str],
     sites: tuple[str, ...] | None,
+    site_of: dict[str, str],
 ) -> CaptureConfig:
-    """Returns the capture's configuration. Raises UsageError when an option is missing."""
+    """Returns the capture's configuration, with the remembered sensor locations.
+
+    Raises UsageError when an option is missing.
+    """
     if not ports:
         raise click.UsageError("Missing option '--port'.")
-    if driver is None:
+    if not drivers:
         raise click.UsageError("Missing option '--driver'.")
-    return CaptureConfig(
-        tuple(LinkConfig(port, driver, baud, options) for port in ports), sites or ()
+    if len(drivers) not in (1, len(ports)):
+        raise click.UsageError("give one --driver for all ports, or one for each --port")
+    own = drivers * len(ports) if len(drivers) == 1 else drivers
+    links = tuple(
+        LinkConfig(port, driver, baud, options) for port, driver in zip(ports, own, strict=True)
     )
+    return CaptureConfig(links, sites or (), {**_remembered(site_of), **site_of})
+
+
+def _remembered(given: dict[str, str]) -> dict[str, str]:
+    """The remembered locations, but for those that another sensor is given now."""
+    taken = set(given.values())
+    return {name: site for name, site in remembered_sites().items() if site not in taken}
+
+
+def remember(client: CaptureClient, site_of: dict[str, str]) -> None:
+    """Remembers the locations that were given now, by the identities of the sensors."""
+    if not site_of:
+        return
+    given = {name.casefold() for name in site_of}
+    found = {
+        sensor["identity"]: sensor["site"]
+        for sensor in client.status()["sensors"]
+        if {str(sensor[key]).casefold() for key in ("identity", "name")} & given
+    }
+    remember_sites({identity: site for identity, site in found.items() if site})

@@ -4,34 +4,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import click
 
 from .. import site_names, write_take
 from ..imports import read_recording, recording_formats
 from .console import warn
-from .options import FilePath, Sites, check_ending
+from .options import FilePath, SensorSite, check_ending
 
-__all__ = ["SensorSite", "import_recording"]
-
-
-class SensorSite(click.ParamType):  # type: ignore[type-arg]
-    """A sensor of a recording and its location."""
-
-    name = "NAME=SITE"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[str, str]:
-        """Returns the sensor's name and its site."""
-        if isinstance(value, tuple):
-            return value
-        name, is_given, site = str(value).rpartition("=")
-        if not is_given:
-            self.fail(f"{value!r} is not NAME=SITE", param, ctx)
-        (site,) = Sites().convert(site, param, ctx)
-        return name.strip(), site
+__all__ = ["import_recording"]
 
 
 @click.command(

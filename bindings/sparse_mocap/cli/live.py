@@ -19,7 +19,7 @@ from .. import MotionDatabase
 from ..calibration_file import read_calibration
 from ..capture.client import CaptureClient, start_capture
 from ..capture.errors import CaptureError
-from .capture_options import capture_options, config_of
+from .capture_options import capture_options, config_of, remember
 from .console import interrupted, warn
 from .live_session import LiveSession
 from .live_view import view
@@ -62,10 +62,11 @@ _MORE_SENSORS_S = 1.0  # how long to wait for further sensors after the first sa
 )  # fmt: skip
 def live(
     ports: tuple[str, ...],
-    driver: str | None,
+    drivers: tuple[str, ...],
     baud: int,
     options: dict[str, str],
     sites: tuple[str, ...] | None,
+    site_of: dict[str, str],
     database_path: Path | None,
     method: str | None,
     preset: str | None,
@@ -90,9 +91,11 @@ def live(
         if attach is not None:
             client = stack.enter_context(attached(attach))
         else:
-            config = config_of(ports, driver, baud, options, sites)
+            config = config_of(ports, drivers, baud, options, sites, site_of)
             client = _own_capture(stack, config)
-        status = _status(client, sites)
+        client.set_sites(site_of)
+        status = _status(client)
+        remember(client, site_of)
         session = LiveSession(
             client,
             status,
@@ -129,17 +132,21 @@ def _leave(client: CaptureClient) -> None:
         shutil.rmtree(client.folder, ignore_errors=True)
 
 
-def _status(client: CaptureClient, sites: tuple[str, ...] | None) -> dict[str, Any]:
-    """Waits for the sensors, and returns the status with their sites."""
+def _status(client: CaptureClient) -> dict[str, Any]:
+    """Waits for the sensors, and returns the status; says what keeps a sensor from being used."""
     client.wait_for_samples(FIRST_SAMPLE_TIMEOUT_S)
     time.sleep(_MORE_SENSORS_S)
     client.skip()
     status = client.status()
-    for sensor, site in zip(status["sensors"], sites or (), strict=False):
-        sensor["site"] = site
-    if status["are_sites_guessed"] and not sites:
-        assumed = ", ".join(f"{sensor['name']} on {sensor['site']}" for sensor in status["sensors"])
-        warn([f"sensor locations not given, assuming {assumed}; see --sites"])
+    warn([link["message"] for link in status["links"] if link["message"]])
+    unnamed = [str(sensor["identity"]) for sensor in status["sensors"] if not sensor["site"]]
+    if status["notes"]:
+        warn(status["notes"])
+    elif unnamed:
+        warn([
+            f"no sensor location is known for {', '.join(unnamed)}; give it with "
+            f"--site '{unnamed[0]}=left_wrist'"
+        ])  # fmt: skip
     return status
 
 

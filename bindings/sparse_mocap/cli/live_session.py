@@ -9,8 +9,8 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from .. import LiveReconstructor, MotionDatabase, PoseEstimate, site_names
-from ..calibration import Calibration, sensor_inputs
+from .. import LiveReconstructor, MotionDatabase, PoseEstimate
+from ..calibration import Calibration
 from ..capture.client import CaptureClient
 from ..capture.errors import CaptureError
 from ..positions import position_header, position_row
@@ -37,17 +37,22 @@ class LiveSession:
         body: Any = None,
     ) -> None:
         self._client = client
-        names = [str(sensor["site"]) for sensor in status["sensors"]]
-        channels = [measured_channels(sensor) for sensor in status["sensors"]]
-        self.sites = _sites(calibration, names)
+        used = {i: sensor for i, sensor in enumerate(status["sensors"]) if _is_used(sensor)}
+        if not used:
+            raise CaptureError(
+                "no sensor has a sensor location; give it with --site NAME=SITE, see the names "
+                "above"
+            )
+        channels = [measured_channels(sensor) for sensor in used.values()]
         self._reconstructor = LiveReconstructor(
-            dict(enumerate(names)),
+            {number: str(sensor["site"]) for number, sensor in used.items()},
             channels,
             database,
             method=choice.method,
             preset=choice.preset,
             options=choice.options,
             calibration=calibration,
+            devices={number: str(sensor["identity"]) for number, sensor in used.items()},
             model=model,
             body=body,
         )
@@ -100,13 +105,5 @@ class LiveSession:
             self._file.write(row + "\n")
 
 
-def _sites(calibration: Calibration | None, names: list[str]) -> list[str]:
-    """Returns the locations of these sensors. Raises CaptureError for an unknown one."""
-    if calibration is not None:
-        return [sensor.site for sensor in sensor_inputs(calibration, names, [()] * len(names))]
-    for name in names:
-        if name not in site_names():
-            raise CaptureError(
-                f"unknown sensor location {name!r}; give the sensor locations with --sites"
-            )
-    return names
+def _is_used(sensor: dict[str, Any]) -> bool:
+    return bool(sensor["site"]) and not sensor["is_replaced"]

@@ -14,6 +14,7 @@ from .live_session import LiveSession
 
 __all__ = ["view"]
 
+LOW_BATTERY_PERCENT = 20.0
 _COLOURS = {"streaming": "green", "live": "green", "failed": "red", "silent": "red"}
 
 
@@ -21,7 +22,8 @@ def view(status: dict[str, Any], session: LiveSession) -> RenderableType:
     """Returns a capture's links and sensors, and the state of the reconstruction."""
     return Group(
         *(_link(link) for link in status["links"]),
-        _sensors(status, session),
+        _sensors(status),
+        *(Text(note, "yellow") for note in status["notes"]),
         _reconstruction(session),
     )
 
@@ -40,23 +42,33 @@ def _link(link: dict[str, Any]) -> Text:
 _PROBLEMS = ("bad_checksums", "malformed", "resyncs", "overruns", "device_resets", "device_errors")
 
 
-def _sensors(status: dict[str, Any], session: LiveSession) -> Table:
+def _sensors(status: dict[str, Any]) -> Table:
     table = Table(
         "sensor", "device", "rate", "lost", "x m/s²", "y m/s²", "z m/s²", "state", box=None
     )
     for column in table.columns[2:7]:
         column.justify = "right"
-    for sensor, site in zip(status["sensors"], session.sites, strict=False):
+    for sensor in status["sensors"]:
+        if sensor["is_replaced"]:
+            continue
         force = sensor["specific_force"]
         values = ["", "", ""] if force is None else [f"{value:.2f}" for value in force]
         total = sensor["samples"] + sensor["missing"]
         state = sensor["state"]
         table.add_row(
-            site, sensor["name"], f"{sensor['rate_hz']:.0f} Hz",
+            sensor["site"] or "none", f"{sensor['identity']}{_battery(sensor)}",
+            f"{sensor['rate_hz']:.0f} Hz",
             f"{100 * sensor['missing'] / max(total, 1):.1f} %", *values,
             Text(state, _COLOURS.get(state, "yellow")),
         )  # fmt: skip
     return table
+
+
+def _battery(sensor: dict[str, Any]) -> str:
+    percent = sensor["battery"]
+    if percent is None:
+        return ""
+    return f" battery {percent:.0f} %" + (", charge it" if percent < LOW_BATTERY_PERCENT else "")
 
 
 def _reconstruction(session: LiveSession) -> Text:

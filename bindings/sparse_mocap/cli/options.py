@@ -74,6 +74,24 @@ class Sites(click.ParamType):  # type: ignore[type-arg]
         return sites
 
 
+class SensorSite(click.ParamType):  # type: ignore[type-arg]
+    """A sensor, by its name or identity, and its location."""
+
+    name = "NAME=SITE"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, str]:
+        """Returns the sensor's name and its site."""
+        if isinstance(value, tuple):
+            return value
+        name, is_given, site = str(value).rpartition("=")
+        if not is_given:
+            self.fail(f"{value!r} is not NAME=SITE", param, ctx)
+        (site,) = Sites().convert(site, param, ctx)
+        return name.strip(), site
+
+
 class PositionAlongBone(click.ParamType):  # type: ignore[type-arg]
     """A sensor location and the sensor's position along the bone."""
 

@@ -23,6 +23,7 @@ from ..body_file import read_body
 from ..calibration import Calibration
 from ..calibration_file import read_calibration
 from ..reconstruction import reconstruct as reconstruct_take
+from ..reconstruction import with_locations
 from ..report import is_unlike_the_database, match, report, unit_warnings
 from .console import progress_bar, warn, write_json
 from .options import (
@@ -124,6 +125,10 @@ def reconstruct(
     _write_positions(positions, solved, frame)
     if json_path is not None:
         write_json(json_path, _report(take, database, choice, offline, solved))
+    used = with_locations(recorded, calibration).sensors
+    left_out = [name for name in recorded.sensors if name not in used]
+    if left_out:
+        warn([f"left out, because nobody said where it is worn: {', '.join(left_out)}"])
     warn(unit_warnings(recorded))
     _print_summary(output, solved)
 

@@ -18,7 +18,7 @@ from ..capture.config import CaptureConfig
 from ..capture.errors import CaptureError
 from ..capture.recording import RecordedTake, recording_to_take
 from ..capture.session import sessions
-from .capture_options import capture_options, config_of
+from .capture_options import capture_options, config_of, remember
 from .console import interrupted, status_line, warn
 from .options import FilePath, check_ending
 
@@ -42,10 +42,11 @@ _POLL_S = 0.1
 )  # fmt: skip
 def record(
     ports: tuple[str, ...],
-    driver: str | None,
+    drivers: tuple[str, ...],
     baud: int,
     options: dict[str, str],
     sites: tuple[str, ...] | None,
+    site_of: dict[str, str],
     output: Path,
     seconds: float | None,
     attach: int | None,
@@ -60,15 +61,16 @@ def record(
     check_ending(output, ".csv")
     folder = output.with_suffix(".capture").absolute()
     if recover is not None:
-        _write(output, recording_to_take(recover, sites=sites or ()))
+        _write(output, recording_to_take(recover, None, sites or (), site_of))
         if recover.absolute() == folder:
             shutil.rmtree(folder)
         return
     if attach is not None:
         with attached(attach) as client:
-            _save(client, output, seconds, sites)
+            client.set_sites(site_of)
+            _save(client, output, seconds, sites, site_of)
         return
-    config = config_of(ports, driver, baud, options, sites)
+    config = config_of(ports, drivers, baud, options, sites, site_of)
     client = _started(config, folder)
     try:
         client.wait_for_samples(FIRST_SAMPLE_TIMEOUT_S)
@@ -76,15 +78,20 @@ def record(
         client.stop()
         shutil.rmtree(folder, ignore_errors=True)
         raise
-    _save(client, output, seconds, sites)
+    _save(client, output, seconds, sites, site_of)
 
 
 def _save(
-    client: CaptureClient, output: Path, seconds: float | None, sites: tuple[str, ...] | None
+    client: CaptureClient,
+    output: Path,
+    seconds: float | None,
+    sites: tuple[str, ...] | None,
+    site_of: dict[str, str],
 ) -> None:
     """Records and writes the take; a capture that nobody needs then ends without its folder."""
     number = _recorded(client, seconds)
-    _write(output, recording_to_take(client.folder, number, sites or ()))
+    remember(client, site_of)
+    _write(output, recording_to_take(client.folder, number, sites or (), site_of))
     client.tell_saved(number)
     if not client.leave():
         warn([f"capture process {client.session.pid} keeps running: other programs are attached"])
@@ -131,6 +138,7 @@ def _recorded(client: CaptureClient, seconds: float | None) -> int:
 
 def _follow(client: CaptureClient, stop: threading.Event, show: Any) -> None:
     shown: dict[int, str] = {}
+    told: set[str] = set()
     while not stop.is_set():
         status = client.status()
         recording = status["recording"]
@@ -141,6 +149,10 @@ def _follow(client: CaptureClient, stop: threading.Event, show: Any) -> None:
             if message != shown.get(index, ""):
                 shown[index] = message
                 warn([message or f"{link['opened_as']}: {link['state']} again"])
+        for note in status["notes"]:
+            if note not in told:
+                told.add(note)
+                warn([note])
         missing = sum(sensor["missing"] for sensor in status["sensors"])
         show(
             f"recording {recording['seconds']:.1f} s, {len(status['sensors'])} sensors, "

@@ -97,8 +97,10 @@ std::vector<PoseEstimate> LiveReconstructor::flush() {
 
 std::vector<PoseEstimate> LiveReconstructor::solve(const std::vector<Reading>& readings) {
   std::vector<PoseEstimate> estimates;
-  for (const auto& reading : readings)
+  for (const auto& reading : readings) {
+    if (reading.specific_force.array().isFinite().any()) last_reading_s_ = reading.time_s;
     if (auto estimate = method_->step(reading)) estimates.push_back(std::move(*estimate));
+  }
   return estimates;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -70,6 +71,8 @@ class LiveReconstructor {
   double latency_s() const { return method_->latency_s() + readings_.delay_s(); }
   double history_s() const { return method_->history_s(); }
   int num_skipped() const { return num_skipped_; }  // readings that were given up
+  // When the last reading was that any sensor was in; minus infinity before there is one.
+  double last_reading_s() const { return last_reading_s_; }
 
  private:
   std::vector<PoseEstimate> solve(const std::vector<Reading>& readings);
@@ -78,6 +81,7 @@ class LiveReconstructor {
   ReadingStream readings_;
   std::size_t largest_backlog_;
   int num_skipped_ = 0;
+  double last_reading_s_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace sparse_mocap

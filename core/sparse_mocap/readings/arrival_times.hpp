@@ -19,10 +19,11 @@ inline constexpr double kLargestClockDrift = 0.01;
 // spread over the time before.
 std::vector<double> spread_evenly(std::span<const double> arrival_s);
 
-// The times of a whole recording: the device's clock is laid under the arrivals by ClockModel;
-// without one (a time that is not finite) the arrivals are spread. A rate that is not real (an
-// emulator that plays faster) is returned, but the device's own seconds are kept. Throws
-// std::invalid_argument unless there are as many times as arrivals.
+// The times of a whole recording: the device's clock is laid under the arrivals by ClockModel, anew
+// after each step of that clock, so that a pause is as long as it was; without a clock (a time that
+// is not finite) the arrivals are spread. A rate that is not real (an emulator that plays faster)
+// is returned, but the device's own seconds are kept. Throws std::invalid_argument unless there are
+// as many times as arrivals.
 HostTimes host_times(std::span<const double> device_s, std::span<const double> arrival_s);
 
 }  // namespace sparse_mocap

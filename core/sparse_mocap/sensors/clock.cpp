@@ -45,56 +45,6 @@ double height_below(const std::vector<Point>& hull, double slope, double x) {
   return height;
 }
 
-struct Line {
-  double height = 0.0;  // at the centre
-  double slope = 0.0;
-};
-
-// How far apart the lowest tenth of the heights are: only these touch a line.
-double spacing_of_lowest(std::vector<double>& heights) {
-  const auto tenth = static_cast<std::ptrdiff_t>(heights.size() / 10);
-  std::nth_element(heights.begin(), heights.begin() + tenth, heights.end());
-  const double lowest = *std::min_element(heights.begin(), heights.begin() + tenth + 1);
-  return std::max(
-      (heights[static_cast<std::size_t>(tenth)] - lowest) / static_cast<double>(1 + tenth), 1e-9);
-}
-
-// The mean of all lines that the points allow, each as likely as it makes the lateness: near an
-// edge arrivals are spread evenly, so that a line which leaves room for one more below them all is
-// less likely by e (Pitman's estimator; the likeliest line rests on two points alone and is a third
-// further off). The line above all arrivals tells the slope too where lateness ends as sharply as
-// it begins, as by a radio's slots; its word counts half, for delays have a largest value by habit
-// only.
-Line mean_line(const std::vector<Point>& points, double centre, double limit) {
-  std::vector<Point> turned;
-  for (const Point& p : points) turned.push_back({p.x, -p.y});
-  const std::vector<Point> below = lower_hull(points), above = lower_hull(turned);
-  const double likeliest = std::clamp(slope_at(below, centre), -limit, limit);
-  std::vector<double> heights, depths;
-  for (const Point& p : points) heights.push_back(p.y - likeliest * p.x);
-  for (const double height : heights) depths.push_back(-height);
-  const double unit = spacing_of_lowest(heights);
-  const double unit_above = std::max(spacing_of_lowest(depths), unit);
-  const double reach = 40.0 * unit / (points.back().x - points.front().x);
-  const double height = height_below(below, likeliest, centre);
-  const double depth = height_below(above, -likeliest, centre);
-  double weights = 0.0;
-  Line sum;
-  constexpr int kSteps = 80;
-  for (int step = -kSteps; step <= kSteps; ++step) {
-    const double slope = likeliest + reach * step / kSteps;
-    if (std::abs(slope) > limit) continue;
-    const double own_height = height_below(below, slope, centre);
-    const double own_depth = height_below(above, -slope, centre);
-    const double weight =
-        std::exp((own_height - height) / unit + 0.5 * (own_depth - depth) / unit_above);
-    weights += weight;
-    sum.height += weight * own_height;
-    sum.slope += weight * slope;
-  }
-  return {sum.height / weights - unit, sum.slope / weights};
-}
-
 }  // namespace
 
 ClockModel::ClockModel(ClockSettings settings) : settings_(settings) {
@@ -106,7 +56,13 @@ ClockModel::ClockModel(ClockSettings settings) : settings_(settings) {
 double ClockModel::observe(double device_s, double arrival_s) {
   if (!std::isfinite(device_s) || !std::isfinite(arrival_s))
     throw std::invalid_argument("ClockModel: a time is not finite");
-  if (num_segments_ == 0 || was_reset(device_s, arrival_s)) start_segment(device_s, arrival_s);
+  if (num_segments_ == 0 || was_reset(device_s, arrival_s)) {
+    num_at_begin_ = 1;
+    start_segment(device_s, arrival_s);
+  } else if (has_fallen_behind(device_s, arrival_s)) {
+    num_at_begin_ = num_late_;
+    start_segment(device_s, arrival_s);
+  }
   add(device_s - origin_device_s_, arrival_s - origin_host_s_);
   last_device_s_ = std::max(last_device_s_, device_s);
   last_host_s_ = std::max(last_host_s_, host_time_s(device_s));
@@ -119,8 +75,19 @@ bool ClockModel::was_reset(double device_s, double arrival_s) const {
          host_time_s(device_s) > arrival_s + settings_.largest_step_s;
 }
 
+bool ClockModel::has_fallen_behind(double device_s, double arrival_s) {
+  if (arrival_s - host_time_s(device_s) <= settings_.late_s) {
+    num_late_ = 0;
+    return false;
+  }
+  if (num_late_ == 0) late_since_s_ = arrival_s;
+  ++num_late_;
+  return arrival_s - late_since_s_ >= settings_.late_for_s;
+}
+
 void ClockModel::start_segment(double device_s, double arrival_s) {
   ++num_segments_;
+  num_late_ = 0;
   buckets_.clear();
   origin_device_s_ = last_device_s_ = device_s;
   origin_host_s_ = arrival_s;
@@ -170,10 +137,11 @@ void ClockModel::fit() {
     centre_s += bucket.device_s;
   }
   centre_s /= static_cast<double>(points.size());
-  Line line{points.front().y, drift_};
-  if (points.size() >= 2) line = mean_line(points, centre_s, settings_.largest_drift);
-  drift_ = line.slope;
-  intercept_s_ = line.height - line.slope * centre_s;
+  const std::vector<Point> hull = lower_hull(points);
+  if (hull.size() >= 2)
+    drift_ =
+        std::clamp(slope_at(hull, centre_s), -settings_.largest_drift, settings_.largest_drift);
+  intercept_s_ = height_below(hull, drift_, 0.0);
 }
 
 double ClockModel::host_time_s(double device_s) const {

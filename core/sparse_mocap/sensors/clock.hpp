@@ -11,15 +11,20 @@ struct ClockSettings {
   double largest_drift = 500e-6;  // a device's clock against the host's, as a part
   double window_s = 600.0;        // older arrivals are forgotten
   double largest_step_s = 1.0;    // a device's clock that leaps further was set anew
+  // One that has fallen behind, as while the device was stalled: when all arrivals of so long are
+  // late by more than radio and buffers make them.
+  double late_s = 0.06;
+  double late_for_s = 0.25;
 };
 
 // Maps a device's clock to the host's monotonic one.
 //
 // Samples arrive only ever late: by buffering, by bursts, by radio. So the line host = offset +
-// rate * device lies below all arrivals: it is the mean of all that do, weighted by how likely they
-// make the lateness, its rate within largest_drift of 1. What all arrivals are late by at least
-// cannot be seen and stays in the offset. A device without a clock is
-// one whose time is its sample counter over its nominal rate; allow it more drift.
+// rate * device is the highest below all arrivals, its rate within largest_drift of 1 (the lower
+// convex hull of Zhang, Liu and Xia, "Clock synchronization algorithms for network measurements",
+// INFOCOM 2002). What all arrivals are late by at least cannot be seen and stays in the offset. A
+// device without a clock is one whose time is its sample counter over its nominal rate; allow it
+// more drift.
 class ClockModel {
  public:
   explicit ClockModel(ClockSettings settings = {});
@@ -34,8 +39,13 @@ class ClockModel {
 
   double offset_s() const;   // host minus device where the device's time is 0
   double drift_ppm() const;  // of the device's clock: positive when the host's seconds are longer
-  double mean_lateness_s() const;                     // of arrivals over the window: the jitter
-  int num_segments() const { return num_segments_; }  // 1 + how often the device's clock was reset
+  double mean_lateness_s() const;  // of arrivals over the window: the jitter
+  // 1 + how often the device's clock was reset or had fallen behind.
+  int num_segments() const { return num_segments_; }
+  // How many arrivals belonged to this segment when it was noticed: those since the step.
+  int num_at_begin() const { return num_at_begin_; }
+  // How many of the last arrivals were all late; when that goes on, a segment began with the first.
+  int num_late() const { return num_late_; }
 
  private:
   // The arrivals of one second of device time: the least late, and the sums of all.
@@ -47,6 +57,7 @@ class ClockModel {
   };
 
   bool was_reset(double device_s, double arrival_s) const;
+  bool has_fallen_behind(double device_s, double arrival_s);
   void start_segment(double device_s, double arrival_s);
   void add(double device_s, double arrival_s);
   void fit();
@@ -58,6 +69,9 @@ class ClockModel {
   double last_device_s_ = 0.0;
   double last_host_s_ = -std::numeric_limits<double>::infinity();
   int num_segments_ = 0;
+  int num_at_begin_ = 1;
+  int num_late_ = 0;
+  double late_since_s_ = 0.0;  // when the first of them arrived
 };
 
 }  // namespace sparse_mocap

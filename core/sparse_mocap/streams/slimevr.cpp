@@ -2,28 +2,19 @@
 #include "sparse_mocap/streams/slimevr.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
+#include "sparse_mocap/base/text_scanner.hpp"
 #include "sparse_mocap/streams/orientation.hpp"
-#include "sparse_mocap/streams/wire.hpp"
+#include "sparse_mocap/streams/slimevr_packets.hpp"
 
 namespace sparse_mocap::streams::slimevr {
 namespace {
 
-enum Type : std::int32_t {
-  kHeartbeat = 0,
-  kHandshake = 3,
-  kAcceleration = 4,
-  kPing = 10,
-  kRotation = 17,
-  kRotationAndAcceleration = 23,
-  kBundle = 100,
-  kCompactBundle = 101,
-};
-constexpr std::int32_t kHighestType = 30;  // of the others, such as battery and signal strength
-constexpr std::size_t kHeader = 12, kLongestDatagram = 1472, kMostTrackers = 32;
-constexpr std::uint8_t kNormalRotation = 1;
+constexpr std::size_t kHeader = 12, kLongestDatagram = 1472;
+constexpr int kSilentAnswers = 3;  // without acceleration between them: it is still
 constexpr std::string_view kHello = "Hey OVR =D 5";
 
 bool is_known(std::int32_t type) {
@@ -34,62 +25,79 @@ Vec3 read_floats(const std::uint8_t* at) {
   return {read_big<float>(at), read_big<float>(at + 4), read_big<float>(at + 8)};
 }
 
-Bytes header(std::int32_t type, std::int64_t number) {
-  Bytes packet;
-  append_big(packet, type);
-  append_big(packet, number);
-  return packet;
+std::string mac_text(const std::uint8_t* mac) {
+  std::array<char, 18> text{};
+  std::snprintf(text.data(), text.size(), "%02x:%02x:%02x:%02x:%02x:%02x", mac[0], mac[1], mac[2],
+                mac[3], mac[4], mac[5]);
+  return text.data();
 }
 
-float finite_float(double value) { return std::isfinite(value) ? static_cast<float>(value) : 0.0f; }
-
-// One tracker with several sensors.
-class Encoder : public StreamEncoder {
- public:
-  std::vector<Bytes> hello() override {
-    Bytes packet = header(kHandshake, 0);
-    for (int i = 0; i < 6; ++i) append_big(packet, std::int32_t{0});
-    append_big(packet, std::int32_t{19});  // version of the protocol
-    packet.push_back(0);                   // no firmware name
-    packet.insert(packet.end(), {0x02, 0, 0, 0, 0, 0x01});
-    return {packet};
+// As mac_text, of a MAC in any usual spelling; empty when it is none.
+std::string mac_text(std::string_view written) {
+  std::string text;
+  for (const char c : lower_case(written)) {
+    if (c == ':' || c == '-') continue;
+    if (!((c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'))) return {};
+    if (text.size() % 3 == 2) text += ':';
+    text += c;
   }
+  return text.size() == 17 ? text : std::string();
+}
 
-  std::vector<Bytes> encode(std::span<const Sample> samples) override {
-    std::vector<Bytes> datagrams;
-    for (const auto& sample : samples) {
-      Sample upright = sample;
-      if (!sample.has_orientation()) upright.orientation = orientation_from_z_up(Quat::Identity());
-      datagrams.push_back(rotation(upright));
-      datagrams.push_back(acceleration(upright));
-    }
-    return datagrams;
-  }
-
- private:
-  Bytes rotation(const Sample& sample) {
-    Bytes packet = header(kRotation, ++number_);
-    packet.push_back(static_cast<std::uint8_t>(sample.sensor));
-    packet.push_back(kNormalRotation);
-    const Quat q = z_up_from_orientation(sample.orientation);
-    for (const double x : {q.x(), q.y(), q.z(), q.w()}) append_big(packet, finite_float(x));
-    packet.push_back(0);
-    return packet;
-  }
-
-  Bytes acceleration(const Sample& sample) {
-    Bytes packet = header(kAcceleration, ++number_);
-    for (const double x : without_gravity(sample)) append_big(packet, finite_float(x));
-    packet.push_back(static_cast<std::uint8_t>(sample.sensor));
-    return packet;
-  }
-
-  std::int64_t number_ = 0;
+struct Greeting {
+  std::int32_t protocol = 0;
+  std::string mac;  // empty: it has none
 };
+
+// [7 x i32 board, sensors, versions][u8 length + name of the firmware][6 bytes MAC]; phones may
+// leave out what comes last.
+Greeting greeting_in(ByteView body) {
+  constexpr std::size_t kNumbers = 28, kMac = 6;
+  Greeting greeting;
+  if (body.size() >= kNumbers) greeting.protocol = read_big<std::int32_t>(&body[kNumbers - 4]);
+  if (body.size() <= kNumbers || body.size() < kNumbers + 1 + body[kNumbers] + kMac)
+    return greeting;
+  const auto mac = body.subspan(kNumbers + 1 + body[kNumbers], kMac);
+  if (std::ranges::any_of(mac, [](std::uint8_t byte) { return byte != 0; }))
+    greeting.mac = mac_text(mac.data());
+  return greeting;
+}
+
+// How long the body of a packet must be.
+std::size_t least_size(std::int32_t type) {
+  switch (type) {
+    case kAcceleration:
+      return 12;
+    case kOldRotation:
+    case kOldSecondRotation:
+      return 16;
+    case kRotation:
+      return 19;
+    case kRotationAndAcceleration:
+      return 15;
+    case kBattery:
+      return 4;
+    case kSensorInfo:
+      return 2;
+    default:
+      return 0;
+  }
+}
+
+Quat read_quaternion(const std::uint8_t* at) {
+  const Vec3 v = read_floats(at);
+  return Quat(read_big<float>(at + 12), v[0], v[1], v[2]);
+}
 
 }  // namespace
 
-Parser::Parser(const Options&) : scanner_(kLongestDatagram + 2) {}
+Parser::Parser(const Options& options) : scanner_(kLongestDatagram + 2) {
+  for (const auto& written : options.list("macs")) {
+    const std::string mac = mac_text(std::string_view(written));
+    if (mac.empty()) options.fail("macs", "a list of MACs such as 24:e6:a1:b2:c3:d4");
+    allowed_.insert(mac);
+  }
+}
 
 void Parser::parse(ByteView bytes) {
   // Inside a datagram any two bytes may look like a length, so a known type and a plausible packet
@@ -110,40 +118,38 @@ void Parser::parse(ByteView bytes) {
 
 void Parser::restart() {
   scanner_.reset();
-  for (auto& [sender, tracker] : trackers_) {
+  macs_.clear();
+  for (auto& [mac, tracker] : trackers_) {
     tracker.last_number.reset();
-    tracker.orientations.clear();
+    for (auto& [number, part] : tracker.parts) part.orientation.reset();
     tracker.next_flags = kAfterReset;
   }
 }
 
 void Parser::parse_datagram(ByteView datagram, std::string_view sender) {
+  ++num_datagrams_;
   if (datagram.size() < kHeader || datagram.size() > kLongestDatagram) {
     ++count(datagram.size() < kHeader ? Count::malformed : Count::overruns);
     return;
   }
   const auto type = read_big<std::int32_t>(datagram.data());
   const auto number = read_big<std::int64_t>(&datagram[4]);
-  const bool is_bundle = type == kBundle || type == kCompactBundle;
+  const auto body = datagram.subspan(kHeader);
   if (!is_known(type) || number < 0) {
     ++count(Count::unknown_types);
     return;
   }
-  auto found = trackers_.find(sender);
-  if (found == trackers_.end()) {
-    if (trackers_.size() == kMostTrackers) {
-      ++count(Count::too_many_sensors);
-      return;
-    }
-    found = trackers_.emplace(std::string(sender), Tracker{}).first;
-    found->second.name = std::string(sender);
+  if (type == kHandshake) return handle_handshake(body, sender);
+  const auto mac = macs_.find(sender);
+  const auto known = mac == macs_.end() ? trackers_.end() : trackers_.find(mac->second);
+  if (known == trackers_.end()) {
+    ++count(Count::unconfigured);
+    return;
   }
-  auto& tracker = found->second;
-  const auto body = datagram.subspan(kHeader);
-  if (type == kHandshake) return handle_handshake(body, tracker);
+  auto& tracker = known->second;
+  tracker.heard = num_datagrams_;
   if (!handle_number(number, tracker)) return;
-  if (type == kPing) reply(Bytes(datagram.begin(), datagram.end()));
-  if (is_bundle)
+  if (type == kBundle || type == kCompactBundle)
     handle_bundle(body, type == kCompactBundle, tracker);
   else
     handle_packet(type, body, tracker);
@@ -163,26 +169,44 @@ bool Parser::handle_number(std::int64_t number, Tracker& tracker) {
   return true;
 }
 
-// [7 x i32 board, sensors, versions][u8 length + name of the firmware][6 bytes MAC].
-void Parser::handle_handshake(ByteView body, Tracker& tracker) {
-  constexpr std::size_t kNumbers = 28, kMac = 6;
+void Parser::handle_handshake(ByteView body, std::string_view sender) {
   ++count(Count::frames);
-  if (body.size() > kNumbers && body.size() >= kNumbers + 1 + body[kNumbers] + kMac) {
-    const auto* mac = &body[kNumbers + 1 + body[kNumbers]];
-    std::array<char, 13> text{};
-    std::snprintf(text.data(), text.size(), "%02x%02x%02x%02x%02x%02x", mac[0], mac[1], mac[2],
-                  mac[3], mac[4], mac[5]);
-    tracker.name = text.data();
+  const Greeting greeting = greeting_in(body);
+  // A phone without a MAC is known by its address, without the port, which changes.
+  const std::string mac =
+      !greeting.mac.empty() ? greeting.mac : std::string(sender.substr(0, sender.rfind(':')));
+  if (!allowed_.empty() && !allowed_.contains(mac)) {
+    ++count(Count::unknown_types);
+    return set_message("tracker " + mac + " is not in the option macs");
   }
-  if (tracker.last_number) {
+  Tracker* tracker = tracker_named(mac, sender);
+  tracker->protocol = greeting.protocol;
+  if (tracker->last_number) {
     ++count(Count::device_resets);
-    tracker.next_flags |= kAfterReset;
+    tracker->next_flags |= kAfterReset;
   }
-  tracker.last_number.reset();
+  tracker->last_number.reset();
   Bytes answer(64);
   answer[0] = static_cast<std::uint8_t>(kHandshake);
   std::copy(kHello.begin(), kHello.end(), answer.begin() + 1);
   reply(answer);
+}
+
+Parser::Tracker* Parser::tracker_named(const std::string& mac, std::string_view sender) {
+  if (!trackers_.contains(mac) && trackers_.size() == kMostTrackers) {
+    const auto silent = std::ranges::min_element(
+        trackers_, {}, [](const auto& tracker) { return tracker.second.heard; });
+    trackers_.erase(silent);
+    ++count(Count::too_many_sensors);
+  }
+  std::erase_if(macs_, [&](const auto& known) {
+    return known.second == mac || !trackers_.contains(known.second);
+  });
+  macs_[std::string(sender)] = mac;
+  auto& tracker = trackers_[mac];
+  tracker.name = mac;
+  tracker.heard = num_datagrams_;
+  return &tracker;
 }
 
 // [u16 length][i32 type][body] each; compact: [u8 length][u8 type][body].
@@ -202,11 +226,7 @@ void Parser::handle_bundle(ByteView body, bool is_compact, Tracker& tracker) {
 }
 
 void Parser::handle_packet(std::int32_t type, ByteView body, Tracker& tracker) {
-  const std::size_t needed = type == kAcceleration              ? 13
-                             : type == kRotation                ? 19
-                             : type == kRotationAndAcceleration ? 15
-                                                                : 0;
-  if (body.size() < needed) {
+  if (body.size() < least_size(type)) {
     ++count(Count::malformed);
     return;
   }
@@ -215,31 +235,39 @@ void Parser::handle_packet(std::int32_t type, ByteView body, Tracker& tracker) {
     return;
   }
   ++count(Count::frames);
-  if (type == kAcceleration) {
-    handle_acceleration(body[12], read_floats(body.data()), tracker);
+  if (type == kAcceleration) {  // owoTrack's has no number
+    handle_acceleration(body.size() > 12 ? body[12] : 0, read_floats(body.data()), tracker);
   } else if (type == kRotation && body[1] == kNormalRotation) {
-    const Vec3 v = read_floats(&body[2]);
-    handle_rotation(body[0], Quat(read_big<float>(&body[14]), v[0], v[1], v[2]), tracker);
+    handle_rotation(body[0], read_quaternion(&body[2]), tracker);
+  } else if (type == kOldRotation || type == kOldSecondRotation) {
+    handle_rotation(type == kOldRotation ? 0 : 1, read_quaternion(body.data()), tracker);
   } else if (type == kRotationAndAcceleration) {
     std::array<double, 7> v;
     for (std::size_t i = 0; i < v.size(); ++i) v[i] = read_big<std::int16_t>(&body[1 + 2 * i]);
     handle_rotation(body[0], Quat(v[3] / 32768, v[0] / 32768, v[1] / 32768, v[2] / 32768), tracker);
     handle_acceleration(body[0], Vec3(v[4], v[5], v[6]) / 128.0, tracker);
+  } else if (type == kBattery) {  // volts before the level in later firmware
+    handle_battery(read_big<float>(&body[body.size() < 8 ? 0 : 4]), tracker);
+  } else if (type == kSensorInfo) {
+    reply({0, 0, 0, static_cast<std::uint8_t>(kSensorInfo), body[0], body[1]});
+  } else if (type == kHeartbeat || type == kPing) {
+    handle_sign_of_life(tracker);
   }
 }
 
-void Parser::handle_rotation(int sensor, const Quat& rotation, Tracker& tracker) {
+void Parser::handle_rotation(int part, const Quat& rotation, Tracker& tracker) {
   if (std::abs(rotation.norm() - 1.0) < 0.1) {
-    tracker.orientations[sensor] = orientation_from_z_up(rotation.normalized());
+    tracker.parts[part].orientation = orientation_from_z_up(rotation.normalized());
   } else {
     ++count(Count::implausible);
-    tracker.orientations.erase(sensor);
+    tracker.parts[part].orientation.reset();
   }
 }
 
-void Parser::handle_acceleration(int sensor, const Vec3& linear_acceleration, Tracker& tracker) {
-  const auto orientation = tracker.orientations.find(sensor);
-  if (orientation == tracker.orientations.end()) {
+void Parser::handle_acceleration(int number, const Vec3& linear_acceleration, Tracker& tracker) {
+  auto& part = tracker.parts[number];
+  part.num_silent = 0;
+  if (!part.orientation) {
     ++count(Count::incomplete);
     return;
   }
@@ -247,28 +275,49 @@ void Parser::handle_acceleration(int sensor, const Vec3& linear_acceleration, Tr
     ++count(Count::implausible);
     return;
   }
-  const auto known = tracker.sensors.find(sensor);
-  const int index = known != tracker.sensors.end()
-                        ? known->second
-                        : add_sensor(tracker.name + "/" + std::to_string(sensor));
-  if (index < 0) return;
-  tracker.sensors[sensor] = index;
+  if (!has_sensor(number, part, tracker)) return;
+  const Vec3& a = linear_acceleration;
+  emit_sample(part, tracker.protocol < kTurnedBefore ? Vec3(a.y(), -a.x(), a.z()) : a, tracker);
+}
+
+void Parser::handle_sign_of_life(Tracker& tracker) {
+  for (auto& [number, part] : tracker.parts) {
+    part.num_silent = std::min(part.num_silent + 1, kSilentAnswers);
+    if (part.num_silent == kSilentAnswers && part.orientation && part.sensor >= 0)
+      emit_sample(part, Vec3::Zero(), tracker);
+  }
+}
+
+void Parser::handle_battery(double level, Tracker& tracker) {
+  tracker.battery = 100.0 * level;
+  for (const auto& [number, part] : tracker.parts)
+    if (part.sensor >= 0) set_battery(part.sensor, tracker.battery);
+}
+
+bool Parser::has_sensor(int number, Part& part, Tracker& tracker) {
+  if (part.sensor >= 0) return true;
+  const std::string id = tracker.name + (number == 0 ? "" : "/" + std::to_string(number));
+  const auto& ids = sensor_ids();
+  const auto known = std::ranges::find(ids, id);
+  part.sensor = known != ids.end() ? static_cast<int>(known - ids.begin()) : add_sensor(id, id);
+  if (part.sensor >= 0) set_battery(part.sensor, tracker.battery);
+  return part.sensor >= 0;
+}
+
+void Parser::emit_sample(const Part& part, const Vec3& linear_acceleration, Tracker& tracker) {
   Sample sample;
-  sample.sensor = index;
-  sample.orientation = orientation->second;
+  sample.sensor = part.sensor;
+  sample.orientation = *part.orientation;
   sample.flags = tracker.next_flags;
   tracker.next_flags = 0;
   restore_gravity(sample, linear_acceleration);
   emit(sample);
 }
 
-std::vector<OptionSpec> Parser::options() { return {}; }
+std::vector<OptionSpec> Parser::options() {
+  return {{"macs", "", "MACs of the trackers to accept, separated by commas; empty: all"}};
+}
 
 std::vector<Bytes> Parser::keep_alive(const Options&) { return {header(kHeartbeat, 0)}; }
-
-std::unique_ptr<StreamEncoder> Parser::make_encoder(const Options&,
-                                                    const std::vector<std::string>&) {
-  return std::make_unique<Encoder>();
-}
 
 }  // namespace sparse_mocap::streams::slimevr

@@ -58,17 +58,25 @@ void StreamParser::reset() {
 
 std::vector<Bytes> StreamParser::pop_replies() { return std::exchange(replies_, {}); }
 
-int StreamParser::add_sensor(const std::string& name) {
+int StreamParser::add_sensor(const std::string& name, const std::string& id) {
   if (sensor_names_.size() == kMostSensors) {
     ++count(Count::too_many_sensors);
     return -1;
   }
   sensor_names_.push_back(printable(name));
+  sensor_ids_.push_back(printable(id));
+  sensor_batteries_.push_back(kAbsent);
   return static_cast<int>(sensor_names_.size()) - 1;
 }
 
-void StreamParser::rename_sensor(int sensor, const std::string& name) {
+void StreamParser::rename_sensor(int sensor, const std::string& name, const std::string& id) {
   sensor_names_[static_cast<std::size_t>(sensor)] = printable(name);
+  sensor_ids_[static_cast<std::size_t>(sensor)] = printable(id);
+}
+
+void StreamParser::set_battery(int sensor, double percent) {
+  if (percent >= 0.0 && percent <= 100.0)
+    sensor_batteries_[static_cast<std::size_t>(sensor)] = percent;
 }
 
 void StreamParser::emit(const Sample& sample) {

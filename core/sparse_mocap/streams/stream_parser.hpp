@@ -46,21 +46,27 @@ class StreamParser {
   const Counters& counters() const { return counters_; }
   // In the order in which the sensors appeared. A name may change when the device sends its own.
   const std::vector<std::string>& sensor_names() const { return sensor_names_; }
+  // What the devices call themselves wherever they are plugged in, such as a serial number or MAC;
+  // empty for a protocol without such.
+  const std::vector<std::string>& sensor_ids() const { return sensor_ids_; }
+  // Percent; NaN: unknown.
+  const std::vector<double>& sensor_batteries() const { return sensor_batteries_; }
   // The device's last text message, such as an error; empty: none.
   const std::string& last_message() const { return last_message_; }
   // Answers that the protocol requires; for datagrams, to the sender of the one just fed.
   std::vector<Bytes> pop_replies();
 
  protected:
-  static constexpr std::size_t kMostSensors = 64;
+  static constexpr std::size_t kMostSensors = 256;
 
   virtual void parse(ByteView bytes) = 0;
   virtual void parse_datagram(ByteView datagram, std::string_view sender);
   virtual void restart() = 0;
 
   // The index of a new sensor, -1 when there are too many (which is counted).
-  int add_sensor(const std::string& name);
-  void rename_sensor(int sensor, const std::string& name);
+  int add_sensor(const std::string& name, const std::string& id = {});
+  void rename_sensor(int sensor, const std::string& name, const std::string& id);
+  void set_battery(int sensor, double percent);
   // Outputs a sample unless it is implausible.
   void emit(const Sample& sample);
   void set_message(std::string_view message);
@@ -70,7 +76,8 @@ class StreamParser {
 
  private:
   Counters counters_;
-  std::vector<std::string> sensor_names_;
+  std::vector<std::string> sensor_names_, sensor_ids_;
+  std::vector<double> sensor_batteries_;
   std::string last_message_;
   std::vector<Bytes> replies_;
   std::vector<Sample>* samples_ = nullptr;

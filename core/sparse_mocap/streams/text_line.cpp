@@ -12,23 +12,14 @@
 #include "sparse_mocap/base/text_scanner.hpp"
 #include "sparse_mocap/streams/orientation.hpp"
 #include "sparse_mocap/streams/text_fields.hpp"
+#include "sparse_mocap/streams/text_header.hpp"
 
 namespace sparse_mocap::streams::text_line {
 namespace {
 
-constexpr std::array<std::string_view, kNumColumns> kNames{
-    "time", "sensor", "counter", "ax", "ay", "az", "gx", "gy",  "gz",
-    "mx",   "my",     "mz",      "qw", "qx", "qy", "qz", "skip"};
 constexpr double kWrap = 4294967296.0;
 constexpr double kLatest = 9e15;  // exactly representable in a double
 constexpr std::size_t kLongestName = 64;
-
-std::optional<Column> column_named(std::string_view name) {
-  const auto lower = lower_case(name);
-  const auto found = std::ranges::find(kNames, lower);
-  if (found == kNames.end()) return std::nullopt;
-  return static_cast<Column>(found - kNames.begin());
-}
 
 bool has(const std::vector<Column>& columns, std::initializer_list<Column> wanted) {
   return std::ranges::all_of(wanted, [&](Column c) { return std::ranges::count(columns, c) == 1; });
@@ -82,80 +73,6 @@ Sample sample_of(const ColumnValues& values, const Profile& profile) {
   return sample;
 }
 
-class Encoder : public StreamEncoder {
- public:
-  Encoder(Profile profile, std::vector<std::string> sensors)
-      : profile_(std::move(profile)), sensors_(std::move(sensors)) {
-    is_header_sent_ = profile_.columns.empty();
-    if (is_header_sent_)
-      profile_.columns = {Column::time, Column::sensor, Column::ax, Column::ay,
-                          Column::az,   Column::gx,     Column::gy, Column::gz};
-  }
-
-  std::vector<Bytes> hello() override {
-    Bytes line;
-    if (!is_header_sent_) {
-      append_text(line, "ready\r\n");  // like sketches at start-up; it is dropped as the first line
-      return {line};
-    }
-    for (const auto column : profile_.columns) {
-      if (!line.empty()) line.push_back(static_cast<std::uint8_t>(profile_.separator));
-      append_text(line, kNames[static_cast<std::size_t>(column)]);
-    }
-    append_text(line, "\r\n");
-    return {line};
-  }
-
-  std::vector<Bytes> encode(std::span<const Sample> samples) override {
-    Bytes out;
-    for (const auto& sample : samples) append_line(out, sample);
-    return {out};
-  }
-
- private:
-  void append_line(Bytes& out, const Sample& sample) {
-    append_text(out, profile_.prefix);
-    bool is_first = true;
-    for (const auto column : profile_.columns) {
-      if (!std::exchange(is_first, false))
-        out.push_back(static_cast<std::uint8_t>(profile_.separator));
-      append_column(out, column, sample);
-    }
-    append_text(out, "\r\n");
-  }
-
-  void append_column(Bytes& out, Column column, const Sample& sample) {
-    const auto index = static_cast<int>(column);
-    const auto part = [&](Column first) { return index - static_cast<int>(first); };
-    if (column == Column::sensor)
-      append_text(out, sensors_.at(static_cast<std::size_t>(sample.sensor)));
-    else if (column == Column::skip)
-      append_text(out, "0");
-    else if (column == Column::time)
-      append_number(out, std::fmod(sample.time_s / profile_.time_tick_s, kWrap), 6);
-    else if (column == Column::counter)
-      append_number(out, static_cast<double>(sample.counter), 0);
-    else if (column <= Column::az)
-      append_number(out, sample.specific_force[part(Column::ax)] / profile_.force_scale, 6);
-    else if (column <= Column::gz)
-      append_number(out, sample.angular_velocity[part(Column::gx)] / profile_.turn_scale, 6);
-    else if (column <= Column::mz)
-      append_number(out, sample.magnetic_field[part(Column::mx)], 6);
-    else
-      append_number(out, quaternion(sample)[part(Column::qw)], 6);
-  }
-
-  static Eigen::Vector4d quaternion(const Sample& sample) {
-    if (!sample.has_orientation()) return {1.0, 0.0, 0.0, 0.0};
-    const Quat q = z_up_from_orientation(sample.orientation);
-    return {q.w(), q.x(), q.y(), q.z()};
-  }
-
-  Profile profile_;
-  std::vector<std::string> sensors_;
-  bool is_header_sent_ = false;
-};
-
 }  // namespace
 
 Profile::Profile(const Options& options)
@@ -166,7 +83,7 @@ Profile::Profile(const Options& options)
       const auto known = column_named(column);
       if (!known)
         options.fail("columns", "'header' or a list of these, of which '" +
-                                    std::string(nearest_name(column, kNames)) +
+                                    std::string(nearest_name(column, kColumnNames)) +
                                     "' is nearest to '" + column + "'");
       columns.push_back(*known);
     }
@@ -184,7 +101,6 @@ Profile::Profile(const Options& options)
   const auto time_unit =
       static_cast<std::size_t>(options.choice("time_unit", {"s", "ms", "us", "ns"}));
   time_tick_s = std::array{1.0, 1e-3, 1e-6, 1e-9}[time_unit];
-  wraps_after = time_unit == 1 || time_unit == 2 ? kWrap : 0.0;
   is_gravity_included = options.choice("gravity", {"included", "removed"}) == 0;
   if (!is_gravity_included && !columns.empty() &&
       !has(columns, {Column::qw, Column::qx, Column::qy, Column::qz}))
@@ -194,8 +110,19 @@ Profile::Profile(const Options& options)
 Parser::Parser(const Options& options)
     : profile_(options),
       columns_(profile_.columns),
+      time_tick_s_(profile_.time_tick_s),
       is_first_line_(options.flag("skip_first_line")),
       skips_first_line_(is_first_line_) {}
+
+void Parser::parse_datagram(ByteView datagram, std::string_view sender) {
+  interrupt();
+  sender_ = sender;
+  begin_message();
+  parse(datagram);
+  constexpr std::array<std::uint8_t, 1> kEnd{'\n'};
+  if (!datagram.empty() && datagram.back() != kEnd[0]) parse(kEnd);
+  sender_.clear();
+}
 
 void Parser::parse(ByteView bytes) {
   lines_.feed(bytes, all_counts(), [&](ByteView line) { handle(text_of(line)); });
@@ -291,12 +218,20 @@ void Parser::handle_values(const ColumnValues& values, std::string_view name) {
 // Columns with unknown names are skipped; without ax, ay, az the line is not a header.
 void Parser::handle_header(const std::vector<std::string_view>& fields) {
   std::vector<Column> columns;
-  for (const auto& field : fields) columns.push_back(column_named(field).value_or(Column::skip));
+  for (const auto& field : fields) columns.push_back(header_column(field).value_or(Column::skip));
   const bool has_orientation = has(columns, {Column::qw, Column::qx, Column::qy, Column::qz});
   if (!is_needed(columns) || (!profile_.is_gravity_included && !has_orientation))
     ++count(Count::unconfigured);
   else
-    columns_ = columns;
+    begin_columns(columns, fields);
+}
+
+// A unit in the header, as in Time_ms, wins over the option.
+void Parser::begin_columns(const std::vector<Column>& columns,
+                           const std::vector<std::string_view>& header) {
+  columns_ = columns;
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    if (columns[i] == Column::time) time_tick_s_ = header_tick_s(header[i], profile_.time_tick_s);
 }
 
 bool Parser::handle_time(double value, Device& device, Sample& sample) {
@@ -305,9 +240,14 @@ bool Parser::handle_time(double value, Device& device, Sample& sample) {
     return false;
   }
   double step = value - device.last_time;
-  if (step < -kWrap / 2 && profile_.wraps_after > 0.0 && device.last_time < kWrap) step += kWrap;
+  const bool wraps = time_tick_s_ == 1e-3 || time_tick_s_ == 1e-6;  // millis() and micros()
+  if (step < -kWrap / 2 && wraps && device.last_time < kWrap) step += kWrap;
   if (step == 0.0) {
     ++count(Count::repeated);
+    return false;
+  }
+  if (step < 0.0 && step * time_tick_s_ > -kSmallStepBack_s) {
+    ++count(Count::out_of_order);
     return false;
   }
   if (step < 0.0) {
@@ -322,7 +262,7 @@ bool Parser::handle_time(double value, Device& device, Sample& sample) {
     device.last_step = step;
   }
   device.last_time = value;
-  sample.time_s = device.time * profile_.time_tick_s;
+  sample.time_s = device.time * time_tick_s_;
   return true;
 }
 
@@ -342,13 +282,28 @@ bool Parser::handle_counter(double value, Device& device, Sample& sample) {
 }
 
 Parser::Device* Parser::device_of(std::string_view name) {
-  const auto known = devices_.find(name);
+  const bool has_id = std::ranges::count(columns_, Column::sensor) == 1;
+  const std::string key(has_id || sender_.empty() ? name : std::string_view(sender_));
+  const auto known = devices_.find(key);
   if (known != devices_.end()) return &known->second;
-  const int sensor = add_sensor(std::string(name));
+  int sensor = -1;
+  if (has_id) {
+    sensor = add_sensor(key, key);
+  } else {
+    const std::string id = address_of(sender_);
+    sensor = add_sensor(devices_.empty() ? profile_.name : id, id);
+  }
   if (sensor < 0) return nullptr;
-  auto& device = devices_[std::string(name)];
+  auto& device = devices_[key];
   device.sensor = sensor;
   return &device;
+}
+
+// A sender's address, without its port unless another sender has the address too.
+std::string Parser::address_of(const std::string& sender) const {
+  const std::string host = sender.substr(0, sender.rfind(':'));
+  const auto& ids = sensor_ids();
+  return std::ranges::find(ids, host) == ids.end() ? host : sender;
 }
 
 std::vector<OptionSpec> Parser::options() {
@@ -377,17 +332,6 @@ std::vector<Bytes> Parser::start_commands(const Options& options) {
   const auto& text = options.text("start_text");
   if (text.empty()) return {};
   return {Bytes(text.begin(), text.end())};
-}
-
-std::unique_ptr<StreamEncoder> Parser::make_encoder(const Options& options,
-                                                    const std::vector<std::string>& sensors) {
-  Profile profile(options);
-  const bool names_sensors =
-      profile.columns.empty() || std::ranges::count(profile.columns, Column::sensor) == 1;
-  if (sensors.size() != 1 && !names_sensors)
-    options.fail("columns", "a list with 'sensor' to emulate several sensors");
-  if (!profile.is_gravity_included) options.fail("gravity", "included for the emulator");
-  return std::make_unique<Encoder>(std::move(profile), sensors);
 }
 
 }  // namespace sparse_mocap::streams::text_line

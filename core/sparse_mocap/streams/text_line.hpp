@@ -7,32 +7,10 @@
 
 #include "sparse_mocap/streams/framing.hpp"
 #include "sparse_mocap/streams/options.hpp"
+#include "sparse_mocap/streams/text_header.hpp"
 #include "sparse_mocap/streams/unwrap.hpp"
 
 namespace sparse_mocap::streams::text_line {
-
-// What a column of a line may hold.
-enum class Column {
-  time,
-  sensor,
-  counter,
-  ax,
-  ay,
-  az,
-  gx,
-  gy,
-  gz,
-  mx,
-  my,
-  mz,
-  qw,
-  qx,
-  qy,
-  qz,
-  skip
-};
-
-inline constexpr std::size_t kNumColumns = static_cast<std::size_t>(Column::skip) + 1;
 
 // By column; NaN where a line has no such column.
 using ColumnValues = std::array<double, kNumColumns>;
@@ -47,7 +25,6 @@ struct Profile {
   double force_scale = 1.0;     // to m/s^2
   double turn_scale = 1.0;      // to rad/s
   double time_tick_s = 1.0;
-  double wraps_after = 0.0;  // 2^32 for counters of micro- and milliseconds, else 0: never
   bool is_gravity_included = true;
   std::string name;
 };
@@ -57,7 +34,8 @@ struct Profile {
 //
 // The first line after the port was opened may be incomplete and still look valid. It is used when
 // it is certainly complete: the line was idle before it (begin_message), it starts with a prefix
-// that cannot be part of a number, or the sensor's next line continues its counter or time.
+// that cannot be part of a number, or the sensor's next line continues its counter or time. A
+// datagram always ends a line; without a column for the sensor, each sender is one.
 class Parser : public StreamParser {
  public:
   explicit Parser(const Options& options);
@@ -81,6 +59,7 @@ class Parser : public StreamParser {
   };
 
   void parse(ByteView bytes) override;
+  void parse_datagram(ByteView datagram, std::string_view sender) override;
   void restart() override;
   void handle(std::string_view line);
   bool read(std::string_view line, ColumnValues& values, std::string_view& name) const;
@@ -89,15 +68,20 @@ class Parser : public StreamParser {
                         std::string_view name);
   void handle_values(const ColumnValues& values, std::string_view name);
   void handle_header(const std::vector<std::string_view>& fields);
+  void begin_columns(const std::vector<Column>& columns,
+                     const std::vector<std::string_view>& header);
   bool handle_time(double value, Device& device, Sample& sample);
   bool handle_counter(double value, Device& device, Sample& sample);
   Device* device_of(std::string_view name);
+  std::string address_of(const std::string& sender) const;
 
   Profile profile_;
   std::vector<Column> columns_;
+  double time_tick_s_;
   bool is_first_line_;
   bool skips_first_line_;
   std::string first_line_;  // may be incomplete; empty: none
+  std::string sender_;      // of the datagram being parsed; empty: none
   LineSplitter lines_;
   std::map<std::string, Device, std::less<>> devices_;
 };

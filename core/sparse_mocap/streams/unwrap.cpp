@@ -41,14 +41,14 @@ TickClock::Step TickClock::unwrap(std::uint64_t raw) {
     is_started_ = true;
   } else {
     const std::int64_t by = signed_step(last_raw_, raw, bits_);
-    step.is_repeated = by == 0;
-    step.is_restarted = by < 0;
+    step.is_repeated = by <= 0 && static_cast<double>(by) * tick_s_ > -kSmallStepBack_s;
+    step.is_restarted = by < 0 && !step.is_repeated;
     if (by > 0) last_step_ = by;
-    const std::int64_t ahead = by == 0 ? 0 : last_step_;
+    const std::int64_t ahead = step.is_repeated ? 0 : last_step_;
     const std::int64_t room = std::numeric_limits<std::int64_t>::max() - ticks_;
     ticks_ += std::min(ahead, room);
   }
-  last_raw_ = raw;
+  if (!step.is_repeated) last_raw_ = raw;
   step.time_s = static_cast<double>(ticks_) * tick_s_;
   return step;
 }

@@ -5,6 +5,10 @@
 
 namespace sparse_mocap::streams {
 
+// A device's clock that goes back by less was read late, as micros() may be in an interrupt; one
+// that goes back further was restarted.
+inline constexpr double kSmallStepBack_s = 0.1;
+
 // Unwraps a device's packet counter of a few bits to an ever-growing count.
 class PacketCounter {
  public:
@@ -31,7 +35,7 @@ class TickClock {
  public:
   struct Step {
     double time_s = 0.0;
-    bool is_repeated = false;
+    bool is_repeated = false;   // or a little before the last
     bool is_restarted = false;  // it went back; the last step is repeated instead
   };
 

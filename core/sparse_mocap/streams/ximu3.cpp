@@ -21,30 +21,40 @@ constexpr std::uint8_t kBinary = 0x80, kEnd = '\n', kEscape = 0xDB, kEscapedEnd 
 constexpr std::uint64_t kLatest_us = std::uint64_t{1} << 53;    // 285 years
 constexpr double kLargest_g = 400.0, kFastest_degps = 10000.0;  // twice what any x-IMU3 measures
 
-// Number of values in a message of this type; 0: not used here, -1: no such type.
-int num_values(char id) {
+// How many values a message of a type has.
+struct Values {
+  bool is_known = true;
+  bool is_used = true;  // here
+  std::size_t least = 0, most = 0;
+
+  bool has(std::size_t count) const { return count == least || count == most; }
+};
+
+// Linear and earth acceleration came with a quaternion before them in earlier firmware.
+Values values_of(char id) {
   switch (id) {
     case 'I':
-      return 6;
+      return {true, true, 6, 6};
     case 'Q':
-      return 4;
+      return {true, true, 4, 4};
     case 'R':
-      return 9;
+      return {true, true, 9, 9};
     case 'A':
-      return 3;
+      return {true, true, 3, 3};
+    case 'B':
+      return {true, true, 2, 3};
     case 'L':
     case 'E':
-      return 7;
+      return {true, true, 3, 7};
     case 'M':
     case 'H':
     case 'T':
-    case 'B':
     case 'W':
     case 'S':
     case 'Y':
-      return 0;
+      return {true, false, 0, 0};
     default:
-      return -1;
+      return {false, false, 0, 0};
   }
 }
 
@@ -192,14 +202,14 @@ void Parser::handle_text(ByteView message, Device& device) {
     const auto text = text_of(message);
     return set_message(text.substr(std::min(text.find(',', 2), text.size() - 1) + 1));
   }
-  const int num = num_values(id);
-  if (num < 0) {
+  const Values expected = values_of(id);
+  if (!expected.is_known) {
     ++count(Count::unknown_types);
     return;
   }
   std::uint64_t time_us = 0;
-  std::vector<double> values(static_cast<std::size_t>(num));
-  bool is_good = fields.size() == values.size() + 2 || (num == 0 && fields.size() > 2);
+  bool is_good = fields.size() > 2 && (!expected.is_used || expected.has(fields.size() - 2));
+  std::vector<double> values(is_good && expected.is_used ? fields.size() - 2 : 0);
   if (is_good) {
     const auto text = fields[1];
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), time_us);
@@ -216,20 +226,22 @@ void Parser::handle_text(ByteView message, Device& device) {
 
 void Parser::handle_binary(ByteView message, Device& device) {
   const char id = static_cast<char>(message[0] - kBinary);
-  const int num = num_values(id);
-  if (id == 'N' || id == 'F' || num == 0) {
+  const Values expected = values_of(id);
+  const bool is_text = id == 'N' || id == 'F';
+  if (is_text || (expected.is_known && !expected.is_used)) {
     ++count(Count::frames);
     count(Count::device_errors) += id == 'F' ? 1 : 0;
-    if (num != 0 && message.size() > 9) set_message(text_of(message.subspan(9)));
+    if (is_text && message.size() > 9) set_message(text_of(message.subspan(9)));
     return;
   }
-  if (num < 0) {
+  if (!expected.is_known) {
     ++count(Count::unknown_types);
     return;
   }
   const auto plain = unescaped(message);
-  const auto size = 9 + 4 * static_cast<std::size_t>(num);
-  if (!plain || plain->size() != size || read_little<std::uint64_t>(&(*plain)[1]) >= kLatest_us) {
+  const std::size_t size = plain ? plain->size() : 0;
+  if (size < 9 || size % 4 != 1 || !expected.has((size - 9) / 4) ||
+      read_little<std::uint64_t>(&(*plain)[1]) >= kLatest_us) {
     ++count(Count::malformed);
     return;
   }
@@ -251,8 +263,9 @@ void Parser::handle_reply(std::string_view text, Device& device) {
   const auto name = ping->find("name"), serial = ping->find("sn");
   if (name == ping->end() || serial == ping->end() || !name->is_string() || !serial->is_string())
     return;
-  device.name = name->get<std::string>() + " " + serial->get<std::string>();
-  if (device.sensor >= 0) rename_sensor(device.sensor, device.name);
+  device.serial = serial->get<std::string>();
+  device.name = name->get<std::string>() + " " + device.serial;
+  if (device.sensor >= 0) rename_sensor(device.sensor, device.name, device.serial);
 }
 
 void Parser::handle_values(char id, std::uint64_t time_us, std::span<const double> values,
@@ -263,7 +276,13 @@ void Parser::handle_values(char id, std::uint64_t time_us, std::span<const doubl
   }
   ++count(Count::frames);
   if (id == 'I') return handle_inertial(time_us, values, device);
-  if (!values.empty()) handle_orientation(time_us, orientation_of(id, values), device);
+  if (id == 'B') {
+    if (device.sensor >= 0) set_battery(device.sensor, values[0]);
+    return;
+  }
+  const bool has_orientation = (id != 'L' && id != 'E') || values.size() == 7;
+  if (has_orientation && !values.empty())
+    handle_orientation(time_us, orientation_of(id, values), device);
 }
 
 void Parser::handle_inertial(std::uint64_t time_us, std::span<const double> v, Device& device) {
@@ -285,7 +304,7 @@ void Parser::handle_inertial(std::uint64_t time_us, std::span<const double> v, D
     ++count(Count::device_resets);
     device.next_flags |= kAfterReset;
   }
-  if (device.sensor < 0) device.sensor = add_sensor(device.name);
+  if (device.sensor < 0) device.sensor = add_sensor(device.name, device.serial);
   if (device.sensor < 0) return;
   Sample sample;
   sample.sensor = device.sensor;

@@ -29,7 +29,7 @@ class Parser : public StreamParser {
  private:
   struct Device {
     int sensor = -1;
-    std::string name;
+    std::string name, serial;
     TickClock clock{64, 1e-6};
     std::optional<Sample> pending;  // waits for its orientation
     std::uint64_t inertial_us = 0;

@@ -109,7 +109,8 @@ void Parser::handle_device_id(const Message& message) {
   }
   names_[message.bus] = hexadecimal(read_big<std::uint32_t>(message.data.data()));
   const auto known = devices_.find(message.bus);
-  if (known != devices_.end()) rename_sensor(known->second.sensor, names_[message.bus]);
+  if (known != devices_.end())
+    rename_sensor(known->second.sensor, names_[message.bus], names_[message.bus]);
 }
 
 void Parser::handle_configuration(ByteView data) {
@@ -134,7 +135,8 @@ void Parser::handle_configuration(ByteView data) {
     const int address = num == 1 ? kMasterBus : static_cast<int>(i) + 1;
     names_[address] = hexadecimal(id);
     const auto known = devices_.find(address);
-    if (known != devices_.end()) rename_sensor(known->second.sensor, names_[address]);
+    if (known != devices_.end())
+      rename_sensor(known->second.sensor, names_[address], names_[address]);
   }
   period_s_ = read_big<std::uint16_t>(&data[4]) * kPeriodTick_s;
   const bool is_bus = num > 1 || read_big<std::uint32_t>(data.data()) != ids.begin()->first;
@@ -156,9 +158,10 @@ Parser::Device* Parser::device_at(int address) {
   const auto known = devices_.find(address);
   if (known != devices_.end()) return &known->second;
   const auto name = names_.find(address);
-  const int sensor = add_sensor(
-      name != names_.end() ? name->second
-                           : (address == kMasterBus ? "mt" : "mt_" + std::to_string(address)));
+  const int sensor =
+      name != names_.end()
+          ? add_sensor(name->second, name->second)
+          : add_sensor(address == kMasterBus ? "mt" : "mt_" + std::to_string(address));
   if (sensor < 0) return nullptr;
   return &devices_.emplace(address, Device{sensor, PacketCounter(16), TickClock(32, tick_s_), 0})
               .first->second;

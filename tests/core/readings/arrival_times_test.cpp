@@ -74,5 +74,39 @@ TEST(ArrivalTimes, KeepTheSecondsOfAClockThatIsNotInRealTime) {
     EXPECT_NEAR(found.times_s[i], 67.0 + device[i], 1e-9);
 }
 
+// A device that counts samples stands still in a pause; two pauses, one of them short.
+TEST(ArrivalTimes, ArePausedAsLongAsTheDeviceWas) {
+  std::vector<double> device, arrival, taken;
+  for (int i = 0; i < 3000; ++i) {
+    taken.push_back(50.0 + 0.01 * i + (i >= 1000 ? 5.0 : 0.0) + (i >= 2800 ? 0.3 : 0.0));
+    device.push_back(0.01 * i);
+    arrival.push_back(taken.back() + (i % 5) * 0.004);
+  }
+  const HostTimes found = host_times(device, arrival);
+  EXPECT_NEAR(found.rate, 1.0, 1e-3);
+  for (std::size_t i = 0; i < device.size(); ++i)
+    EXPECT_NEAR(found.times_s[i], taken[i], 3e-3) << i;
+}
+
+TEST(ArrivalTimes, FollowADeviceThatRestarts) {
+  std::vector<double> device, arrival;
+  for (int i = 0; i < 1000; ++i) {
+    device.push_back(i < 600 ? 100.0 + 0.01 * i : 0.01 * (i - 600));
+    arrival.push_back(7.0 + 0.01 * i + (i < 600 ? 0.0 : 1.5));
+  }
+  const HostTimes found = host_times(device, arrival);
+  for (std::size_t i = 0; i < device.size(); ++i)
+    EXPECT_NEAR(found.times_s[i], arrival[i], 1e-3) << i;
+}
+
+TEST(ArrivalTimes, ATakeOfASecondHasARealClock) {
+  std::vector<double> device, arrival;
+  for (int i = 0; i < 120; ++i) {
+    device.push_back(0.01 * i);
+    arrival.push_back(3.0 + 0.01 * i + (i == 0 ? 0.03 : 0.0));
+  }
+  EXPECT_NEAR(host_times(device, arrival).rate, 1.0, 1e-3);
+}
+
 }  // namespace
 }  // namespace sparse_mocap

@@ -42,7 +42,10 @@ TEST(TickClock, AscendsThroughWrapsAndRestarts) {
     for (std::uint64_t step = 1; step < 10; ++step)
       EXPECT_NEAR(clock.unwrap(cut(start + 10 * step, bits)).time_s,
                   first_s + 0.01 * static_cast<double>(step), 1e-9);
-    const auto again = clock.unwrap(cut(start + 10, bits));
+    const auto late = clock.unwrap(cut(start + 10, bits));  // 80 ms back
+    EXPECT_TRUE(late.is_repeated);
+    EXPECT_FALSE(late.is_restarted);
+    const auto again = clock.unwrap(cut(start - 30, bits));
     EXPECT_TRUE(again.is_restarted);
     EXPECT_NEAR(again.time_s, first_s + 0.1, 1e-9);  // on by the last step's length
   }

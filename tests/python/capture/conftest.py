@@ -12,6 +12,7 @@ import pytest
 from capture_support import DRIVER, OPTIONS, Play, stop_captures
 from sparse_mocap import Take
 from sparse_mocap.capture import Emulator
+from sparse_mocap.capture.remembered_sites import FILE_VARIABLE
 from sparse_mocap.capture.session import FOLDER_VARIABLE
 
 
@@ -22,6 +23,7 @@ def runtime(
     """Whatever a test leaves running is ended."""
     folder = tmp_path_factory.mktemp("runtime")
     monkeypatch.setenv(FOLDER_VARIABLE, str(folder))
+    monkeypatch.setenv(FILE_VARIABLE, str(tmp_path_factory.mktemp("settings") / "sensors.json"))
     yield folder
     stop_captures()
 

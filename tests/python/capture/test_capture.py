@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from capture_support import DRIVER, OPTIONS, Play, some_take, until
+from capture_support import DRIVER, OPTIONS, SITES, Play, some_take, until
 from sparse_mocap import StreamEncoder
 from sparse_mocap.capture import (
     CaptureClient,
@@ -37,6 +37,7 @@ def is_running(pid: int) -> bool:
 
 
 def config_for(port: str, **how: object) -> CaptureConfig:
+    how.setdefault("sites", SITES)
     return CaptureConfig((LinkConfig(port, DRIVER, options=OPTIONS),), **how)  # type: ignore[arg-type]
 
 
@@ -188,20 +189,28 @@ def test_two_recordings_of_a_capture_are_two_takes(play: Play, tmp_path: Path) -
         recording_to_take(tmp_path / "c", 2)
 
 
+def mac_of(device: StreamEncoder) -> str:
+    greeting = device.hello()[0]
+    return ":".join(f"{byte:02x}" for byte in greeting[-6:])
+
+
 def test_trackers_over_udp_are_told_apart_and_recorded(tmp_path: Path) -> None:
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as free:
         free.bind(("127.0.0.1", 0))
         address = free.getsockname()
     link = LinkConfig(f"udp://{address[0]}:{address[1]}", "slimevr")
     take = some_take(1.0, 2)
+    devices = [StreamEncoder("slimevr", [site]) for site in take.sites]
+    site_of = {mac_of(device): site for device, site in zip(devices, take.sites, strict=True)}
+    config = CaptureConfig((link,), site_of=site_of, must_record=True)
     trackers = []
-    with start_capture(CaptureConfig((link,), must_record=True), tmp_path / "c") as client:
+    with start_capture(config, tmp_path / "c") as client:
         until(lambda: client.status()["links"][0]["state"] == "configuring")
-        for site in take.sites:
+        for device in devices:
             tracker = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
             tracker.settimeout(5.0)
             tracker.connect(address)
-            trackers.append((tracker, StreamEncoder("slimevr", [site])))
+            trackers.append((tracker, device))
         for tracker, device in trackers:
             for packet in device.hello():
                 tracker.send(packet)
@@ -217,7 +226,8 @@ def test_trackers_over_udp_are_told_apart_and_recorded(tmp_path: Path) -> None:
     for tracker, _ in trackers:
         tracker.close()
     recorded = recording_to_take(tmp_path / "c").take
-    for own, sent in zip(recorded.sensors.values(), take.sensors.values(), strict=True):
+    for site, sent in take.sensors.items():
+        own = recorded.sensors[site]
         assert own.specific_force == pytest.approx(sent.specific_force, abs=0.05)
 
 
@@ -308,7 +318,7 @@ def test_sensors_on_ports_of_their_own_make_one_take(play: Play, tmp_path: Path)
         client.stop()
     recorded = recording_to_take(tmp_path / "c")
     assert recorded.take.sites == ["left_ankle", "right_ankle"]
-    assert not recorded.are_sites_guessed
+    assert recorded.warnings == []
     assert [len(record.times_s) for record in recorded.take.sensors.values()] == [200, 200]
 
 

@@ -31,7 +31,7 @@ class Notes:
         self.is_full = False
         self.pause_s = 0.0
 
-    def connected(self, link: int, port: str) -> tuple[bytes, ...]:
+    def connected(self, link: int, port: str, device: str) -> tuple[bytes, ...]:
         self.connections.append(port)
         return (b"go",)
 
@@ -199,7 +199,7 @@ def test_bytes_that_mean_nothing_raise_the_question(links: Links, device: Device
 
     def puzzled() -> bool:
         device.send(b"\x00\xff")
-        return "check the driver and the baud rate (115200)" in link.message
+        return "check the protocol and the baud rate (115200)" in link.message
 
     until(puzzled)
     assert link.state is State.CONFIGURING

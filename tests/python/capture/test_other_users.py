@@ -18,7 +18,7 @@ from contextlib import closing, suppress
 from pathlib import Path
 
 import pytest
-from capture_support import DRIVER, OPTIONS, Play, some_take, stop_captures, until
+from capture_support import DRIVER, OPTIONS, SITES, Play, some_take, stop_captures, until
 from sparse_mocap import write_take
 from sparse_mocap.capture import (
     CaptureClient,
@@ -63,7 +63,7 @@ def open_folder() -> Iterator[Path]:
 
 
 def config_for(port: str, **how: object) -> CaptureConfig:
-    return CaptureConfig((LinkConfig(port, DRIVER, options=OPTIONS),), **how)  # type: ignore[arg-type]
+    return CaptureConfig((LinkConfig(port, DRIVER, options=OPTIONS),), SITES, **how)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("channel", ["unix", "tcp"])

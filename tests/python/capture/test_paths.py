@@ -95,7 +95,7 @@ class Notes:
     def __init__(self) -> None:
         self.data = b""
 
-    def connected(self, link: int, port: str) -> tuple[bytes, ...]:
+    def connected(self, link: int, port: str, device: str) -> tuple[bytes, ...]:
         return (b"go",)
 
     def keep_alive(self, link: int) -> tuple[bytes, ...]:

@@ -95,10 +95,9 @@ def test_what_is_emulated_is_recorded(
     take, path = played
     port = first_line(start("emulate", path, "--driver", DRIVER))
     done = command("record", "--port", port, "--driver", DRIVER, "-o", tmp_path / "own.csv",
-                   "--seconds", 2.9)  # fmt: skip
+                   "--seconds", 2.9, "--sites", ",".join(take.sites))  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(f"{tmp_path / 'own.csv'}: 3 sensors, 900 samples")
-    assert "sensor locations not given" in done.stderr
     recorded = read_take(tmp_path / "own.csv")
     check_same(recorded, take)
     assert recorded.sensors["left_wrist"].orientation is not None
@@ -127,7 +126,8 @@ def test_a_recording_whose_command_was_killed_is_taken_up_again(
 ) -> None:
     take, path = played
     port = first_line(start("emulate", path, "--driver", DRIVER))
-    arguments = ("record", "--port", port, "--driver", DRIVER, "-o", tmp_path / "own.csv")
+    arguments = ("record", "--port", port, "--driver", DRIVER, "-o", tmp_path / "own.csv",
+                 "--sites", ",".join(take.sites))  # fmt: skip
     process = start(*arguments)
     until(lambda: sessions() and (tmp_path / "own.capture" / "samples.bin").stat().st_size > 20_000)
     process.kill()
@@ -153,7 +153,8 @@ def test_what_a_killed_capture_left_is_recovered(
 ) -> None:
     take, path = played
     port = first_line(start("emulate", path, "--driver", DRIVER))
-    arguments = ("record", "--port", port, "--driver", DRIVER, "-o", tmp_path / "own.csv")
+    arguments = ("record", "--port", port, "--driver", DRIVER, "-o", tmp_path / "own.csv",
+                 "--sites", ",".join(take.sites))  # fmt: skip
     process = start(*arguments)
     until(lambda: sessions() and (tmp_path / "own.capture" / "samples.bin").stat().st_size > 20_000)
     os.kill(sessions()[0].pid, signal.SIGKILL)
@@ -205,7 +206,9 @@ def test_live_streams_poses(
     start: Start, command: Command, take_path: Path, database_path: Path, tmp_path: Path
 ) -> None:
     port = first_line(start("emulate", take_path, "--driver", DRIVER))
+    sites = ",".join(read_take(take_path).sites)
     done = command("live", "--port", port, "--driver", DRIVER, "--database", database_path,
+                   "--sites", sites,
                    "--positions", tmp_path / "live.csv", "--seconds", 3)  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert "poses" in done.stdout
@@ -224,6 +227,7 @@ def test_emulated_and_recorded_the_motion_is_that_of_the_file(
 ) -> None:
     port = first_line(start("emulate", take_path, "--driver", DRIVER, "--speed", 3))
     done = command("record", "--port", port, "--driver", DRIVER, "-o", tmp_path / "own.csv",
+                   "--sites", ",".join(read_take(take_path).sites),
                    "--seconds", read_take(take_path).end_s / 3 + 0.5)  # fmt: skip
     assert done.returncode == 0, done.stderr
     found = []
