@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import bpy
@@ -30,7 +31,7 @@ from ..session.steps import Steps
 from ..session.take import takes
 from .job_operator import JobOperator
 
-_ANSWER_S = 1.0
+ANSWER_S = 1.0
 
 
 def connected() -> LiveSession:
@@ -41,15 +42,17 @@ def connected() -> LiveSession:
     return session
 
 
-class _NowOperator:
+class NowOperator:
     """Mix-in: act() does the work at once; its message or error is reported in one line."""
 
     report: Callable[[set[str], str], None]  # the operator's own
 
     def act(self, context: Context) -> str:
+        """Do the work; returns what to report."""
         raise NotImplementedError
 
     def execute(self, context: Context) -> set[str]:
+        """Do the work, and report what came of it."""
         try:
             message = self.act(context)
         except Exception as error:
@@ -60,7 +63,7 @@ class _NowOperator:
         return {"FINISHED"}
 
 
-class SPARSEMOCAP_OT_find_sensors(_NowOperator, Operator):
+class SPARSEMOCAP_OT_find_sensors(NowOperator, Operator):
     """Refresh the list of ports and running captures."""
 
     bl_idname = "sparse_mocap.find_sensors"
@@ -74,7 +77,7 @@ class SPARSEMOCAP_OT_find_sensors(_NowOperator, Operator):
         return ""
 
 
-class SPARSEMOCAP_OT_connect_sensors(_NowOperator, Operator):
+class SPARSEMOCAP_OT_connect_sensors(NowOperator, Operator):
     """Connect to the sensors at this port."""
 
     bl_idname = "sparse_mocap.connect_sensors"
@@ -85,16 +88,20 @@ class SPARSEMOCAP_OT_connect_sensors(_NowOperator, Operator):
     def act(self, context: Context) -> str:
         """Start a session; the panel shows its state."""
         settings = settings_of(context.scene)
-        check_online_access(settings.port)
-        port = sensors.Port(
-            settings.port, settings.driver, settings.baud, settings.driver_options, settings.sites
+        for one in (settings, *settings.more_ports):
+            check_online_access(one.port)
+        port, *more = (
+            sensors.Port(one.port, one.driver, one.baud, one.driver_options)
+            for one in (settings, *settings.more_ports)
         )
-        live.begin(sensors.new_session(port, takes_folder(bpy.data.filepath, settings.folder)))
+        port = replace(port, sites=settings.sites)
+        folder = takes_folder(bpy.data.filepath, settings.folder)
+        live.begin(sensors.new_session(port, folder, more))
         live_scene.ensure_ticking()
         return ""
 
 
-class SPARSEMOCAP_OT_attach_sensors(_NowOperator, Operator):
+class SPARSEMOCAP_OT_attach_sensors(NowOperator, Operator):
     """Connect to a capture that is running in the background."""
 
     bl_idname = "sparse_mocap.attach_sensors"
@@ -114,7 +121,7 @@ class SPARSEMOCAP_OT_attach_sensors(_NowOperator, Operator):
         raise InputError("This capture has ended: refresh the ports and connect again")
 
 
-class SPARSEMOCAP_OT_disconnect_sensors(_NowOperator, Operator):
+class SPARSEMOCAP_OT_disconnect_sensors(NowOperator, Operator):
     """Disconnect; a recording continues in the background."""
 
     bl_idname = "sparse_mocap.disconnect_sensors"
@@ -156,7 +163,7 @@ class SPARSEMOCAP_OT_go_live(JobOperator, Operator):
         return f'Live preview on "{armature.name}"'
 
 
-class SPARSEMOCAP_OT_leave_live(_NowOperator, Operator):
+class SPARSEMOCAP_OT_leave_live(NowOperator, Operator):
     """Stop the live preview; the character's own pose and action come back."""
 
     bl_idname = "sparse_mocap.leave_live"
@@ -171,7 +178,7 @@ class SPARSEMOCAP_OT_leave_live(_NowOperator, Operator):
         return ""
 
 
-class SPARSEMOCAP_OT_recentre(_NowOperator, Operator):
+class SPARSEMOCAP_OT_recentre(NowOperator, Operator):
     """Let the live character stand at the origin."""
 
     bl_idname = "sparse_mocap.recentre"
@@ -185,7 +192,7 @@ class SPARSEMOCAP_OT_recentre(_NowOperator, Operator):
         return ""
 
 
-class SPARSEMOCAP_OT_face_front(_NowOperator, Operator):
+class SPARSEMOCAP_OT_face_front(NowOperator, Operator):
     """Let the live character face the front, at the origin."""
 
     bl_idname = "sparse_mocap.face_front"
@@ -199,7 +206,7 @@ class SPARSEMOCAP_OT_face_front(_NowOperator, Operator):
         return ""
 
 
-class SPARSEMOCAP_OT_record_take(_NowOperator, Operator):
+class SPARSEMOCAP_OT_record_take(NowOperator, Operator):
     """Record the sensors."""
 
     bl_idname = "sparse_mocap.record_take"
@@ -209,7 +216,7 @@ class SPARSEMOCAP_OT_record_take(_NowOperator, Operator):
 
     def act(self, context: Context) -> str:
         """Start recording."""
-        answer_of(connected().record(), _ANSWER_S)
+        answer_of(connected().record(), ANSWER_S)
         return "Recording"
 
 

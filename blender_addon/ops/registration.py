@@ -26,6 +26,7 @@ from . import (
     live,
     mapping,
     reconstruct,
+    sensor_table,
     take,
 )
 
@@ -38,6 +39,7 @@ CLASSES = (
     *take.CLASSES,
     *reconstruct.CLASSES,
     *live.CLASSES,
+    *sensor_table.CLASSES,
     *calibrate.CLASSES,
     *character.CLASSES,
     *bake.CLASSES,

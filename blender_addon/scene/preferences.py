@@ -99,8 +99,8 @@ _PERSONAL: dict[str, _Personal] = {
         115200,
         {
             "name": "Baud rate",
-            "description": "Speed of the serial port, in bits per second",
-            "min": 1200,
+            "description": ("Speed of the serial port, in bits per second. 0 tries the usual ones"),
+            "min": 0,
         },
     ),
     "driver_options": _Personal(
@@ -108,7 +108,10 @@ _PERSONAL: dict[str, _Personal] = {
         "",
         {
             "name": "Options",
-            "description": "Options of the protocol, for example: rate_hz=100, output=mtdata",
+            "description": (
+                "Options of the protocol as name=value, separated by commas, for example: "
+                "rate_hz=100, output=mtdata. `sparse-mocap drivers` lists them all"
+            ),
         },
     ),
     "sites": _Personal(
@@ -118,7 +121,7 @@ _PERSONAL: dict[str, _Personal] = {
             "name": "Sensor locations",
             "description": (
                 "Where each sensor is worn, in the order of the sensors and separated by commas, "
-                "for example: left_wrist, right_wrist. Empty: the names of the sensors"
+                "for example: left_wrist, right_wrist. The table of the connected sensors is surer"
             ),
         },
     ),
@@ -147,6 +150,12 @@ SPARSEMOCAP_preferences.__annotations__ = {
     name: personal.kind(default=personal.default, **personal.options)
     for name, personal in _PERSONAL.items()
 }
+
+
+def own_property(name: str) -> Any:
+    """A property of the same kind, for what a scene has several of."""
+    personal = _PERSONAL[name]
+    return personal.kind(default=personal.default, **personal.options)
 
 
 def delegating(name: str) -> Any:

@@ -21,7 +21,7 @@ from ..session.methods import (
     preset_items,
     written_options,
 )
-from .preferences import PERSONAL, delegating
+from .preferences import PERSONAL, delegating, own_property
 
 _kept_items: dict[str, Items] = {}
 """Blender does not keep the texts of menus that are made on the fly; this does."""
@@ -42,6 +42,15 @@ def _presets(settings: PropertyGroup, _: Context) -> Items:
 
 def _is_armature(_: PropertyGroup, obj: Object) -> bool:
     return obj.type == "ARMATURE"
+
+
+class SPARSEMOCAP_PG_port(PropertyGroup):
+    """A further port and the protocol of the sensors at it."""
+
+
+SPARSEMOCAP_PG_port.__annotations__ = {
+    name: own_property(name) for name in ("port", "driver", "baud", "driver_options")
+}
 
 
 class SPARSEMOCAP_PG_source(PropertyGroup):
@@ -253,6 +262,7 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
     in_place: BoolProperty(
         name="In place", description="Keep the live character at the origin while it moves"
     )
+    more_ports: CollectionProperty(type=SPARSEMOCAP_PG_port)
 
 
 SPARSEMOCAP_PG_settings.__annotations__ |= {name: delegating(name) for name in PERSONAL}
@@ -277,6 +287,7 @@ def scene_choice(scene: Scene) -> MethodChoice:
 def register() -> None:
     """Register the settings."""
     bpy.utils.register_class(SPARSEMOCAP_PG_source)
+    bpy.utils.register_class(SPARSEMOCAP_PG_port)
     bpy.utils.register_class(SPARSEMOCAP_PG_option)
     bpy.utils.register_class(SPARSEMOCAP_PG_take)
     bpy.utils.register_class(SPARSEMOCAP_PG_settings)
@@ -289,4 +300,5 @@ def unregister() -> None:
     bpy.utils.unregister_class(SPARSEMOCAP_PG_settings)
     bpy.utils.unregister_class(SPARSEMOCAP_PG_take)
     bpy.utils.unregister_class(SPARSEMOCAP_PG_option)
+    bpy.utils.unregister_class(SPARSEMOCAP_PG_port)
     bpy.utils.unregister_class(SPARSEMOCAP_PG_source)

@@ -28,9 +28,12 @@ MODULES = (
 )
 CAPTURE_MODULES = (
     "sparse_mocap.capture.client",
+    "sparse_mocap.capture.diagnosis",
     "sparse_mocap.capture.drivers",
     "sparse_mocap.capture.ports",
     "sparse_mocap.capture.recording",
+    "sparse_mocap.capture.remembered_sites",
+    "sparse_mocap.capture.shaking",
     "sparse_mocap.capture",
 )
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from queue import SimpleQueue
 from typing import Any
 
+from .core import capture as capture_module
 from .core import core
 from .database import Database
 from .errors import InputError, one_line
@@ -22,6 +23,9 @@ STOP_WITHIN_S = 1.0
 ANSWER_WITHIN_S = 10.0
 _POLL_S = 0.005
 _STATUS_S = 0.25
+NO_READINGS_S = 0.7
+"""The panel says so within a second."""
+NO_SITES = "Choose where the sensors are worn: no sensor has a sensor location"
 
 
 @dataclass(frozen=True)
@@ -36,7 +40,13 @@ class LiveState:
     links: tuple[dict[str, Any], ...] = ()
     """From the capture's status: state, message, counters."""
     sensors: tuple[dict[str, Any], ...] = ()
-    """From the capture's status: name, site, rate_hz, state, missing."""
+    """From the capture's status: identity, name, site, rate_hz, state, missing, battery."""
+    notes: tuple[str, ...] = ()
+    """What is wrong with where the sensors are worn; one line each."""
+    shaking: str = ""
+    """The site for which the sensor that is shaken is being looked for."""
+    no_readings: str = ""
+    """Why the live preview has had no readings for a second; empty while it has some."""
     recording: dict[str, Any] | None = None
     is_live: bool = False
     quality: Quality = field(default_factory=Quality)
@@ -60,7 +70,10 @@ class LiveSession:
         self._wanted: tuple[Database, MethodChoice, Any] | None = None
         self._active: tuple[Database, MethodChoice, Any] | None = None
         self._poses: LivePoses | None = None
+        self._begun_s = 0.0
+        self._shaking: tuple[str, Any] | None = None
         self._sites: dict[int, str] = {}
+        self._identities: dict[int, str] = {}
         self._channels: list[list[str]] = []
         self._thread = threading.Thread(target=self._run, name="Sparse Mocap: live", daemon=True)
 
@@ -126,6 +139,24 @@ class LiveSession:
 
         return self._ask(stop)
 
+    def set_site(self, identity: str, site: str) -> Future[Any]:
+        """Say where a sensor is worn, now and whenever it is connected; an empty site: nowhere."""
+
+        def change(client: Any) -> None:
+            client.set_sites({identity: site})
+            _remember({identity: site})
+
+        return self._ask(change)
+
+    def find_by_shaking(self, site: str) -> Future[Any]:
+        """The sensor that is shaken next is the one at this site; an empty site: stop looking."""
+
+        def change(client: Any) -> None:
+            finder = capture_module().shaking.ShakeFinder() if site else None
+            self._shaking = (site, finder) if site else None
+
+        return self._ask(change)
+
     def tell_saved(self, number: int) -> Future[Any]:
         """Say that a recording was saved, so that the capture need not keep it."""
         return self._ask(lambda client: client.tell_saved(number))
@@ -161,17 +192,25 @@ class LiveSession:
             if time.perf_counter() >= next_status_s:
                 self._apply_status(client.status())
                 next_status_s = time.perf_counter() + _STATUS_S
-            self._advance(client.read())
+            samples = client.read()
+            self._look_for_shaking(client, samples)
+            self._advance(samples)
             self._stop.wait(_POLL_S)
 
     def _apply_status(self, status: dict[str, Any]) -> None:
         for link in status["links"]:
             if link["state"] == "failed":
                 raise InputError(link["message"] or f"{link['port']}: cannot be used")
-        sites = {i: sensor["site"] for i, sensor in enumerate(status["sensors"])}
-        channels = [core().readings.measured_channels(sensor) for sensor in status["sensors"]]
+        used = {
+            number: sensor
+            for number, sensor in enumerate(status["sensors"])
+            if sensor["site"] and not sensor["is_replaced"]
+        }
+        sites = {number: str(sensor["site"]) for number, sensor in used.items()}
+        channels = [core().readings.measured_channels(sensor) for sensor in used.values()]
         is_settled = (sites, channels) == (self._sites, self._channels)
         self._sites, self._channels = sites, channels
+        self._identities = {number: str(sensor["identity"]) for number, sensor in used.items()}
         wanted = self._wanted
         if not is_settled or wanted is not self._active:
             self._poses = None
@@ -181,7 +220,10 @@ class LiveSession:
         self._update(
             is_connected=True,
             links=tuple(status["links"]),
-            sensors=tuple(status["sensors"]),
+            sensors=tuple(s for s in status["sensors"] if not s["is_replaced"]),
+            notes=tuple(status["notes"]),
+            shaking=self._shaking[0] if self._shaking else "",
+            no_readings=self._why_no_readings(status),
             recording=status["recording"],
             is_live=self._poses is not None,
             quality=self._poses.quality() if self._poses else Quality(),
@@ -190,11 +232,45 @@ class LiveSession:
     def _begin_poses(self, database: Database, choice: MethodChoice, calibration: Any) -> None:
         try:
             self._poses = LivePoses(
-                database.motions, self._sites, self._channels, choice, calibration
+                database.motions,
+                self._sites,
+                self._channels,
+                choice,
+                calibration,
+                self._identities,
             )
+            self._begun_s = time.perf_counter()
             self._update(warning="", num_dropped=0)
         except Exception as error:  # shown until the sensors or their locations change
             self._update(warning=one_line_of(error))
+
+    def _look_for_shaking(self, client: Any, samples: Any) -> None:
+        if self._shaking is None:
+            return
+        site, finder = self._shaking
+        number = finder.push(samples)
+        if number is None:
+            return
+        self._shaking = None
+        sensors = client.status()["sensors"]
+        identity = str(sensors[number]["identity"])
+        # Who was there before is not: two sensors at one site are used for nothing.
+        others = {str(s["identity"]): "" for s in sensors if s["site"] == site}
+        sites = {**others, identity: site}
+        client.set_sites(sites)
+        _remember(sites)
+
+    def _why_no_readings(self, status: dict[str, Any]) -> str:
+        """One line while the live preview has had no readings for NO_READINGS_S, else nothing."""
+        if self._wanted is None:
+            return ""
+        if self._poses is None:
+            return "" if self._sites else NO_SITES
+        silent_s = time.perf_counter() - max(self._poses.last_reading_s, self._begun_s)
+        if silent_s < NO_READINGS_S:
+            return ""
+        reasons = [link["message"] for link in status["links"] if link["message"]]
+        return f"No readings for {silent_s:.0f} s" + (f": {reasons[0]}" if reasons else "")
 
     def _advance(self, samples: Any) -> None:
         if self._poses is None:
@@ -239,6 +315,11 @@ def one_line_of(error: BaseException) -> str:
     if type(error).__module__.endswith("capture.errors"):
         return " ".join(str(error).split())
     return one_line(error)
+
+
+def _remember(sites: dict[str, str]) -> None:
+    with suppress(OSError):  # a read-only home keeps no settings; the session has them
+        capture_module().remembered_sites.remember_sites(sites)
 
 
 _current: LiveSession | None = None

@@ -56,11 +56,12 @@ class LivePoses:
         channels: list[list[str]],
         choice: MethodChoice,
         calibration: Any = None,
+        devices: dict[int, str] | None = None,
     ) -> None:
         """sensors: the location of each sensor of the capture, by its number there.
 
         channels: what each measures. calibration: sparse_mocap.calibration.Calibration; None: the
-        sensors are worn in the default orientation.
+        sensors are worn in the default orientation. devices: their identities, by number.
         """
         known = core().site_names()
         for site in sensors.values() if calibration is None else ():
@@ -72,6 +73,7 @@ class LivePoses:
             motions,
             **choice.arguments(),
             calibration=calibration,
+            devices=devices,
             largest_backlog=LARGEST_BACKLOG,
         )
         self._match = core().report.LiveMatch(_NUM_POSES)
@@ -85,6 +87,11 @@ class LivePoses:
         for estimate in self._reconstructor.advance(time.perf_counter()):
             pose = self._pose(estimate)
         return pose
+
+    @property
+    def last_reading_s(self) -> float:
+        """When the last reading was that any sensor was in, on the machine's monotonic clock."""
+        return float(self._reconstructor.last_reading_s)
 
     def quality(self) -> Quality:
         """How the last poses came out."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Names that Blender accepts unchanged."""
+"""Names that Blender accepts unchanged, and names as the panel shows them."""
 
 from __future__ import annotations
 
@@ -25,3 +25,8 @@ def _free(name: str, taken: set[str]) -> str:
 def _shortened(name: str, num_bytes: int) -> str:
     """The longest start of the name within that many bytes of UTF-8."""
     return name.encode(errors="replace")[:num_bytes].decode(errors="ignore")
+
+
+def shown_site(site: str) -> str:
+    """A sensor location as the panel shows it: Left Wrist."""
+    return site.replace("_", " ").title()

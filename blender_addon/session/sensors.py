@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -52,24 +53,27 @@ last_takes: list[str] = []
 """The file of the take that was saved last, if there is one."""
 
 
-def new_session(port: Port, folder: Path) -> LiveSession:
+def new_session(port: Port, folder: Path, more: Sequence[Port] = ()) -> LiveSession:
     """A session, not started yet, that starts a capture with its logs in that folder of takes.
 
-    Raises InputError, or ConfigError for wrong options of the driver.
+    more: further ports. Raises InputError, or ConfigError for wrong options of a driver.
     """
     module = capture()
-    if not port.port:
+    ports = (port, *more)
+    if not all(one.port for one in ports):
         raise InputError("Choose the port of the sensors first")
+    names = [one.port for one in ports]
+    if twice := next((name for name in names if names.count(name) > 1), ""):
+        raise InputError(f"{twice} is in the list twice: remove one")
     sites = tuple(_words(port.sites))
     for site in sites:
         if site not in core().site_names():
             known = ", ".join(core().site_names())
             raise InputError(f'Unknown sensor location "{site}": choose from {known}')
-    options = _options(port.options)
-    module.drivers.make_parser(port.driver, options)
     config = module.CaptureConfig(
-        (module.LinkConfig(port.port, port.driver, port.baud, options),),
+        tuple(_link(module, one) for one in ports),
         sites=sites,
+        site_of=module.remembered_sites.remembered_sites(),
         linger_s=LINGER_S,
         is_temporary=True,
     )
@@ -78,7 +82,7 @@ def new_session(port: Port, folder: Path) -> LiveSession:
     def connect() -> Any:
         return module.start_capture(config, free_path(logs))
 
-    return LiveSession(connect, port.port)
+    return LiveSession(connect, ", ".join(names))
 
 
 def attach_session(session: Any) -> LiveSession:
@@ -138,6 +142,14 @@ def _save(module: Any, logs: Path, number: int, folder: Path) -> tuple[str, tupl
     path = free_path(folder / f"take-{stamp()}.csv")
     core().write_take(path, recorded.take)
     return str(path), tuple(recorded.warnings)
+
+
+def _link(module: Any, port: Port) -> Any:
+    options = _options(port.options)
+    module.drivers.make_parser(port.driver, options)
+    link = module.LinkConfig(port.port, port.driver, port.baud, options)
+    module.diagnosis.check_bandwidth(link)
+    return link
 
 
 def _options(text: str) -> dict[str, str]:

@@ -12,10 +12,9 @@ from ..session.calibrating import CALIBRATING
 from ..session.core import missing_reason
 from ..session.live import LiveSession, LiveState
 from ..session.port_scanner import port_scanner
+from . import sensors as sensor_panels
 from . import text
 from .step import StepPanel, action_button, job_is_running, redraw_soon
-
-_ICONS = {"live": "RADIOBUT_ON", "silent": "RADIOBUT_OFF"}
 
 
 class SPARSEMOCAP_PT_live(StepPanel, Panel):
@@ -66,19 +65,7 @@ def _choices(layout: UILayout, context: Context) -> None:
             box, context, found.text, icon="INFO" if found.recording_s is None else "REC"
         )
         box.operator("sparse_mocap.attach_sensors", icon="LINKED").pid = found.pid
-    row = layout.row(align=True)
-    row.prop(settings, "port", icon="PLUGIN")
-    row.operator("sparse_mocap.find_sensors", text="", icon="FILE_REFRESH")
-    known = next((port for port in result.ports if port.port == settings.port), None)
-    if known is not None and known.description:
-        text.paragraph(layout, context, known.description)
-    column = layout.column()
-    column.use_property_split = True
-    column.use_property_decorate = False
-    column.prop(settings, "driver", text="Protocol")  # the names are too long for a narrow sidebar
-    column.prop(settings, "baud")
-    column.prop(settings, "driver_options")
-    column.prop(settings, "sites", text="Locations")
+    sensor_panels.ports(layout, context)
     row = layout.row()
     row.scale_y = 1.5
     row.enabled = bool(settings.port)
@@ -93,28 +80,11 @@ def _session(layout: UILayout, context: Context, session: LiveSession) -> None:
     if not state.is_connected:
         layout.label(text="Connecting")
         return
-    for link in state.links:
-        if link["state"] != "streaming" or link["message"]:
-            message = link["message"] or f"{link['port']}: {link['state']}"
-            text.paragraph(layout, context, message, icon="INFO")
-    _sensors(layout, state)
+    sensor_panels.links(layout, context, state)
+    sensor_panels.table(layout, context, state)
     _live(layout, context, session)
     if not job_is_running(CALIBRATING):
         _recording(layout, context, state)
-
-
-def _sensors(layout: UILayout, state: LiveState) -> None:
-    column = layout.box().column(align=True)
-    column.scale_y = 0.85
-    for sensor in state.sensors:
-        split = column.split(factor=0.58)
-        name = str(sensor["site"] or sensor["name"]).replace("_", " ")
-        split.label(text=name, icon=_ICONS.get(sensor["state"], "ERROR"))
-        lost = f", {sensor['missing']} lost" if sensor["missing"] else ""
-        rate = "no data" if sensor["state"] != "live" else f"{sensor['rate_hz']:.0f} Hz"
-        split.label(text=rate + lost)
-    if not state.sensors:
-        column.label(text="Waiting for data", icon="SORTTIME")
 
 
 def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
@@ -132,9 +102,11 @@ def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
         )
         if not has_database:
             text.paragraph(layout, context, "Choose a motion database first", icon="INFO")
+    if state.no_readings and session.is_live_wanted:
+        text.error(layout, context, state.no_readings)
     if state.warning and session.is_live_wanted:
         text.error(layout, context, state.warning)
-    if session.is_live_wanted and quality.num_poses:
+    if session.is_live_wanted and quality.num_poses and not state.no_readings:
         rows = [
             ("Match", quality.match),
             ("Delay", f"{1e3 * quality.latency_s:.0f} ms"),

@@ -22,11 +22,12 @@ DRIVER, OPTIONS = "xsens_mt", "output=mtdata"
 
 
 @contextmanager
-def emulated(take: Any) -> Iterator[str]:
+def emulated(take: Any, **faults: Any) -> Iterator[str]:
     """The port at which the take is played from the moment somebody opens it."""
-    from sparse_mocap.capture import Emulator
+    from sparse_mocap.capture import Emulator, Faults
 
-    emulator, stop = Emulator(take, DRIVER, {"output": "mtdata"}), threading.Event()
+    emulator = Emulator(take, DRIVER, {"output": "mtdata"}, faults=Faults(**faults))
+    stop = threading.Event()
     [port] = emulator.plug_in()
     thread = threading.Thread(target=lambda: emulator.run(stop.is_set))
     thread.start()
@@ -57,12 +58,14 @@ def repeated(take: Any, times: int) -> Any:
 
 @contextmanager
 def own_runtime(folder: Path) -> Iterator[None]:
-    """Captures are looked for in that folder alone, and ended afterwards."""
+    """Captures and remembered sensors are in that folder alone; captures are ended afterwards."""
     from sparse_mocap.capture import CaptureClient, CaptureError
+    from sparse_mocap.capture.remembered_sites import FILE_VARIABLE
     from sparse_mocap.capture.session import FOLDER_VARIABLE, sessions
 
     before = os.environ.get(FOLDER_VARIABLE)
     os.environ[FOLDER_VARIABLE] = str(folder)
+    os.environ[FILE_VARIABLE] = str(folder / "sensors.json")
     try:
         yield
     finally:
@@ -70,6 +73,7 @@ def own_runtime(folder: Path) -> Iterator[None]:
             with suppress(CaptureError):
                 CaptureClient(session).stop()
         os.environ.pop(FOLDER_VARIABLE)
+        os.environ.pop(FILE_VARIABLE)
         if before is not None:
             os.environ[FOLDER_VARIABLE] = before
 

@@ -51,7 +51,7 @@ def why_no_samples(config: LinkConfig, arrived: Sequence[bytes]) -> str:
         return _other(data, config, other)
     if config.driver == "slimevr" and is_datagram:
         return (
-            "datagrams arrive, but no tracker has introduced itself yet; that takes up to 5 s, "
+            "datagrams arrive, but no tracker has introduced itself yet; wait 5 s, "
             "then restart the tracker"
         )
     advice = "check the protocol"

@@ -12,7 +12,7 @@ from .. import site_names
 from ..files import write_text
 from ..settings_folder import settings_folder
 
-__all__ = ["remember_sites", "remembered_sites"]
+__all__ = ["remember_sites", "remembered_sites", "sites_path"]
 
 FILE_VARIABLE = "SPARSE_MOCAP_SENSORS"
 _FORMAT = "sparse_mocap_sensors"

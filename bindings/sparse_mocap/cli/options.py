@@ -20,6 +20,7 @@ __all__ = [
     "MethodChoice",
     "OutputPath",
     "PositionAlongBone",
+    "SensorSite",
     "Setting",
     "Sites",
     "Span",

@@ -125,11 +125,7 @@ def reconstruct(
     _write_positions(positions, solved, frame)
     if json_path is not None:
         write_json(json_path, _report(take, database, choice, offline, solved))
-    used = with_locations(recorded, calibration).sensors
-    left_out = [name for name in recorded.sensors if name not in used]
-    if left_out:
-        warn([f"left out, because nobody said where it is worn: {', '.join(left_out)}"])
-    warn(unit_warnings(recorded))
+    warn([*_left_out(recorded, calibration), *unit_warnings(recorded)])
     _print_summary(output, solved)
 
 
@@ -137,6 +133,15 @@ def _read(path: Path, clap: tuple[float, float] | None) -> Take:
     """Returns the take, with synchronized clocks if the time of a clap is given."""
     take = read_take(path)
     return take if clap is None else aligned(take, clap)[0]
+
+
+def _left_out(take: Take, calibration: Calibration | None) -> list[str]:
+    """Returns a line that names the sensors that were not used, if there are such."""
+    used = with_locations(take, calibration).sensors
+    names = [name for name in take.sensors if name not in used]
+    if not names:
+        return []
+    return [f"left out, because it is not known where they are worn: {', '.join(names)}"]
 
 
 def _calibration(

@@ -19,12 +19,14 @@ from sparse_mocap.capture.sample_log import SAMPLE
 from sparse_mocap_demo.generator import generate_library
 
 from blender_addon.session import live, sensors
+from blender_addon.session.bake import Placement
 from blender_addon.session.database import open_database
 from blender_addon.session.errors import InputError
 from blender_addon.session.live_poses import LivePoses
 from blender_addon.session.methods import MethodChoice
 from blender_addon.session.port_scanner import PortScanner
 
+PLACEMENT = Placement(1.0, 25.0, True)
 SITES = ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
 
 
@@ -94,7 +96,7 @@ def test_a_recording_becomes_a_take_and_a_performance(made, port, tmp_path):
     session = _connected(port, tmp_path)
     session.record().result(5)
     until(lambda: session.state.recording and session.state.recording["samples"] > 600)
-    job = sensors.save_take_job(session, made[0], "", tmp_path / "takes", MethodChoice())
+    job = sensors.save_take_job(session, made[0], "", tmp_path / "takes", MethodChoice(), PLACEMENT)
     kept = job.run()
     assert kept.reason == ""
     assert kept.warnings == ()
@@ -102,7 +104,7 @@ def test_a_recording_becomes_a_take_and_a_performance(made, port, tmp_path):
     take = sparse_mocap.read_take(kept.path)
     assert take.sites == SITES
     assert take.end_s - take.begin_s > 1.0
-    assert kept.performance.motion.num_frames > 20
+    assert kept.placed is not None
     until(lambda: session.state.recording is None)
 
 
@@ -110,8 +112,10 @@ def test_a_take_is_kept_though_there_is_no_database(port, tmp_path):
     session = _connected(port, tmp_path)
     session.record().result(5)
     until(lambda: session.state.recording and session.state.recording["samples"] > 100)
-    kept = sensors.save_take_job(session, "", "", tmp_path / "takes", MethodChoice()).run()
-    assert kept.performance is None
+    kept = sensors.save_take_job(
+        session, "", "", tmp_path / "takes", MethodChoice(), PLACEMENT
+    ).run()
+    assert kept.placed is None
     assert "database" in kept.reason
     assert sparse_mocap.read_take(kept.path).sites == SITES
 
@@ -139,7 +143,7 @@ def test_a_recording_outlives_the_session_and_is_found(port, tmp_path):
     live.begin(sensors.attach_session(found.session))
     again = live.current()
     until(lambda: again.state.recording is not None)
-    kept = sensors.save_take_job(again, "", "", tmp_path / "takes", MethodChoice()).run()
+    kept = sensors.save_take_job(again, "", "", tmp_path / "takes", MethodChoice(), PLACEMENT).run()
     assert sparse_mocap.read_take(kept.path).sites == SITES
     live.end()
     until(lambda: not is_alive(found.pid))
@@ -212,3 +216,69 @@ def test_a_preview_that_is_too_slow_uses_the_newest_reading(made):
     samples["device_time_s"], samples["specific_force"] = times_s, [0.0, 0.0, 9.81]
     assert poses.advance(samples) is None
     assert poses.quality().num_skipped > 80
+
+
+def test_several_ports_make_one_session(made, tmp_path):
+    with emulated(made[1]) as left, emulated(made[1]) as right:
+        first, second = (sensors.Port(port, DRIVER, options=OPTIONS) for port in (left, right))
+        live.begin(sensors.new_session(first, tmp_path / "takes", [second]))
+        session = live.current()
+        until(lambda: session.state.error or len(session.state.sensors) == 2 * len(SITES))
+        assert session.state.error == ""
+        assert [link["state"] for link in session.state.links] == ["streaming"] * 2
+        live.end()
+    with pytest.raises(InputError, match="twice"):
+        sensors.new_session(first, tmp_path / "takes", [first])
+
+
+def test_a_location_is_chosen_and_remembered_for_the_sensor(made, port, tmp_path):
+    chosen = sensors.Port(port, DRIVER, options=OPTIONS)
+    live.begin(sensors.new_session(chosen, tmp_path / "takes"))
+    session = live.current()
+    until(lambda: len(session.state.sensors) == len(SITES))
+    assert [sensor["site"] for sensor in session.state.sensors] == [""] * len(SITES)
+    session.go_live(open_database(made[0]), MethodChoice())
+    until(lambda: "no sensor has a sensor location" in session.state.no_readings)
+    first, second = (str(sensor["identity"]) for sensor in session.state.sensors[:2])
+    session.set_site(first, "head").result(5)
+    until(lambda: session.state.sensors[0]["site"] == "head")
+    session.set_site(second, "head").result(5)
+    until(lambda: session.state.notes)
+    assert "both worn at head" in session.state.notes[0]
+    session.set_site(second, "").result(5)
+    until(lambda: session.state.sensors[0]["site"] == "head" and not session.state.notes)
+    remembered = sensors.capture().remembered_sites.remembered_sites()
+    assert remembered == {first: "head"}
+
+
+def test_the_shaken_sensor_is_put_at_the_chosen_location(made, tmp_path):
+    times = np.arange(2000) / 100.0
+    still = np.tile([0.0, 0.0, 9.81], (len(times), 1))
+    shaken = still + 30.0 * np.sin(20.0 * times)[:, None] * [1.0, 0.0, 0.0]
+    records = {
+        site: sparse_mocap.SensorRecord(times, shaken if site == SITES[2] else still)
+        for site in SITES
+    }
+    with emulated(sparse_mocap.Take(records)) as port:
+        chosen = sensors.Port(port, DRIVER, options=OPTIONS)
+        live.begin(sensors.new_session(chosen, tmp_path / "takes"))
+        session = live.current()
+        until(lambda: len(session.state.sensors) == len(SITES))
+        session.find_by_shaking("left_ankle").result(5)
+        until(lambda: session.state.sensors[2]["site"] == "left_ankle")
+        until(lambda: session.state.shaking == "")
+        assert [sensor["site"] for sensor in session.state.sensors].count("") == 3
+        live.end()
+
+
+def test_no_readings_are_told_within_a_second(made, tmp_path):
+    database = open_database(made[0])
+    with emulated(made[1], stalls=((3.0, 60.0),)) as port:
+        session = _connected(port, tmp_path)
+        session.go_live(database, MethodChoice())
+        until(lambda: session.state.quality.num_poses > 5)
+        until(lambda: session.state.no_readings)
+        last_s = max(s["age_s"] for s in session.state.sensors)
+        assert last_s < 1.2
+        assert "No readings for" in session.state.no_readings
+        live.end()

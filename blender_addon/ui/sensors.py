@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The ports to connect, and the table of the connected sensors: which is worn where."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from bpy.types import Context, UILayout
+
+from ..scene.settings import settings_of
+from ..session.live import LiveState
+from ..session.names import shown_site
+from ..session.port_scanner import port_scanner
+from . import text
+
+LOW_BATTERY_PERCENT = 20.0
+_STATE_ICONS = {"live": "RADIOBUT_ON", "silent": "RADIOBUT_OFF"}
+_LINK_ICONS = {"streaming": "CHECKMARK", "failed": "ERROR"}
+_LONGEST_IDENTITY = 24
+
+
+def ports(layout: UILayout, context: Context) -> None:
+    """The ports and their protocols, to choose."""
+    settings = settings_of(context.scene)
+    _port(layout, context, settings, -1)
+    for index, more in enumerate(settings.more_ports):
+        _port(layout, context, more, index)
+    layout.operator("sparse_mocap.add_port", icon="ADD")
+    if settings.sites:
+        column = _split(layout)
+        column.prop(settings, "sites", text="Locations")
+
+
+def links(layout: UILayout, context: Context, state: LiveState) -> None:
+    """Each connected port with its protocol and state."""
+    for link in state.links:
+        row = layout.row(align=True)
+        icon = _LINK_ICONS.get(str(link["state"]), "SORTTIME")
+        row.label(text=_port_name(str(link["opened_as"] or link["port"])), icon=icon)
+        row.label(text=str(link["driver"]))
+        message = str(link["message"])
+        if message:
+            text.paragraph(layout, context, message, icon="INFO")
+        elif link["state"] != "streaming":
+            layout.label(text=str(link["state"]).capitalize(), icon="BLANK1")
+
+
+def table(layout: UILayout, context: Context, state: LiveState) -> None:
+    """Each sensor with its body part, rate and battery."""
+    box = layout.box()
+    for sensor in state.sensors:
+        _sensor(box, context, sensor)
+    if not state.sensors:
+        box.label(text="Waiting for data", icon="SORTTIME")
+    for note in state.notes:
+        text.error(layout, context, note)
+    if state.shaking:
+        row = layout.row()
+        row.label(text=f"Shake: {shown_site(state.shaking)}", icon="HAND")
+        row.operator("sparse_mocap.shake_to_find", text="", icon="X").site = "none"
+    elif state.sensors:
+        layout.operator("sparse_mocap.shake_to_find", icon="HAND")
+
+
+def _sensor(layout: UILayout, context: Context, sensor: dict[str, Any]) -> None:
+    column = layout.column(align=True)
+    split = column.split(factor=0.62)
+    split.label(
+        text=_shortened(str(sensor["identity"])), icon=_STATE_ICONS.get(sensor["state"], "ERROR")
+    )
+    split.label(text="no data" if sensor["state"] != "live" else f"{sensor['rate_hz']:.0f} Hz")
+    row = column.row(align=True)
+    is_worn = bool(sensor["site"])
+    site = row.operator(
+        "sparse_mocap.set_site",
+        text=shown_site(str(sensor["site"])) if is_worn else "Choose Location",
+        icon="DOWNARROW_HLT",
+    )
+    site.identity = str(sensor["identity"])
+    lost, battery = sensor["missing"], sensor["battery"]
+    if lost:
+        column.label(text=f"{lost} samples lost", icon="BLANK1")
+    if battery is not None:
+        is_low = battery < LOW_BATTERY_PERCENT
+        line = column.row()
+        line.alert = is_low
+        line.label(
+            text=f"Battery {battery:.0f} %" + (": charge it" if is_low else ""),
+            icon="ERROR" if is_low else "BLANK1",
+        )
+
+
+def _port(layout: UILayout, context: Context, port: Any, index: int) -> None:
+    box = layout.box()
+    row = box.row(align=True)
+    row.prop(port, "port", icon="PLUGIN", text="" if index >= 0 else "Port")
+    if index < 0:
+        row.operator("sparse_mocap.find_sensors", text="", icon="FILE_REFRESH")
+    else:
+        row.operator("sparse_mocap.remove_port", text="", icon="X").index = index
+    known = next((one for one in port_scanner.result.ports if one.port == port.port), None)
+    if known is not None and known.description:
+        text.paragraph(box, context, known.description)
+    column = _split(box)
+    column.prop(port, "driver", text="Protocol")  # the names are too long for a narrow sidebar
+    column.prop(port, "baud")
+    column.prop(port, "driver_options")
+
+
+def _split(layout: UILayout) -> UILayout:
+    column = layout.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    return column
+
+
+def _port_name(port: str) -> str:
+    return port.removeprefix("/dev/")
+
+
+def _shortened(identity: str) -> str:
+    """Its end tells devices of one kind apart."""
+    if len(identity) <= _LONGEST_IDENTITY:
+        return identity
+    return "..." + identity[3 - _LONGEST_IDENTITY :]
