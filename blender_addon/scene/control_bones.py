@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
 
 from bpy.types import Bone, Object
 from mathutils import Vector
@@ -14,6 +16,7 @@ _MECHANISM = re.compile(r"^(MCH|ORG|DEF|VIS|WGT)[-_]")
 _FACE = "face"  # of Rigify's metarigs: hundreds of bones that no motion turns
 _RIGIFY_MOVER = "torso"
 _RIGIFY_ORIGINAL = "ORG-"
+_RIGIFY_SPINE = f"{_RIGIFY_ORIGINAL}spine"
 
 
 @dataclass(frozen=True)
@@ -90,16 +93,25 @@ def _rigify_controls(armature: Object) -> PickedBones:
         for original in originals
         if (control := _rigify_control(armature, original)) is not None
     }
+    spine = sorted(name for name in by_original if name.startswith(_RIGIFY_SPINE))
+    below = dict(pairwise(reversed(spine)))
+    order = [*spine, *(name for name in _by_depth(bones, by_original) if name not in spine)]
     picked = []
-    for original in sorted(by_original, key=lambda name: len(bones[name].parent_recursive)):
+    for original in order:
         bone = originals[original]
         above = (by_original.get(parent.name, "") for parent in bone.parent_recursive)
         parent = next((name for name in above if name), "")
+        if original in spine:  # the controls of spines hang on the torso, each by itself
+            parent = by_original[below[original]] if original in below else ""
         picked.append(Picked(by_original[original], parent, bone.head_local, bone.tail_local))
     limbs = tuple(_rigify_limbs(armature))
     ik_properties = {limb.end: _rigify_ik_properties(armature, limb) for limb in limbs}
     fk = _rigify_fk_properties(armature)
     return PickedBones(picked, _RIGIFY_MOVER, fk, ik_properties, limbs)
+
+
+def _by_depth(bones: Any, names: Iterable[str]) -> list[str]:
+    return sorted(names, key=lambda name: len(bones[name].parent_recursive))
 
 
 def _rigify_control(armature: Object, original: str) -> str | None:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import bpy
-from bpy.props import CollectionProperty, PointerProperty, StringProperty
+from bpy.props import CollectionProperty, IntProperty, PointerProperty, StringProperty
 from bpy.types import Context, PropertyGroup, WindowManager
 
 from ..session.core import core
@@ -28,6 +28,7 @@ class SPARSEMOCAP_PG_mapping(PropertyGroup):
 
     joints: CollectionProperty(type=SPARSEMOCAP_PG_mapped_joint)
     sources: CollectionProperty(type=SPARSEMOCAP_PG_source_joint)
+    index: IntProperty(name="Part of the body")
 
 
 CLASSES = (SPARSEMOCAP_PG_mapped_joint, SPARSEMOCAP_PG_source_joint, SPARSEMOCAP_PG_mapping)

@@ -88,7 +88,7 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
     takes: CollectionProperty(type=SPARSEMOCAP_PG_take)
     take_index: IntProperty(name="Take", update=_choose_take)
     use_range: BoolProperty(
-        name="Part of the take", description="Use only a part of the take, from one time to another"
+        name="Use a part", description="Use only a part of the take, from one time to another"
     )
     range_begin_s: FloatProperty(
         name="From (s)",
@@ -113,14 +113,14 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
         description="Leave out keys while the motion stays within the errors below",
     )
     largest_error_deg: FloatProperty(
-        name="Rotation (°)",
+        name="Error (°)",
         description="How far a bone's rotation may be off between keys, in degrees",
         default=0.5,
         min=0.0,
         max=20.0,
     )
     largest_error_cm: FloatProperty(
-        name="Location (cm)",
+        name="Error (cm)",
         description="How far a bone's location may be off between keys, in cm",
         default=0.2,
         min=0.0,

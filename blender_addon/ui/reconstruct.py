@@ -64,14 +64,16 @@ def character(layout: UILayout, context: Context) -> None:
     settings = settings_of(context.scene)
     layout.prop(settings, "target", icon="ARMATURE_DATA")
     if settings.target is None:
-        text.paragraph(layout, context, "Empty: a figure of its own is made", icon="INFO")
+        text.paragraph(layout, context, "Empty: the add-on makes a figure", icon="INFO")
         if any(is_ours(obj) for obj in context.view_layer.objects):
             row = layout.row()
             row.use_property_split = False
             row.prop(settings, "reuse_armature")
     others = [obj for obj in context.selected_objects if obj.type == "ARMATURE"]
     if settings.to_selected or any(obj != settings.target for obj in others):
-        layout.prop(settings, "to_selected")
+        row = layout.row()
+        row.use_property_split = False
+        row.prop(settings, "to_selected")
 
 
 class SPARSEMOCAP_PT_keys(StepPanel, Panel):
@@ -161,7 +163,7 @@ def _quality(layout: UILayout, settings: SPARSEMOCAP_PG_settings) -> None:
 def _performed(layout: UILayout, context: Context) -> None:
     """What the active character plays, and what can be done with it."""
     active = context.view_layer.objects.active
-    if is_ours(active):
+    if is_ours(active) and not active.children:
         layout.operator("sparse_mocap.add_body", icon="OUTLINER_OB_MESH")
     action = performed_action(active)
     facts = None if action is None else facts_of(action)

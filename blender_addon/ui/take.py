@@ -16,6 +16,7 @@ from . import text
 from .step import StepPanel, redraw_soon, tick
 
 _ROWS = 4
+_MATCH_ICONS = {"good": "CHECKMARK", "fair": "REMOVE", "poor": "ERROR"}
 
 
 class SPARSEMOCAP_UL_takes(UIList):
@@ -38,13 +39,16 @@ class SPARSEMOCAP_UL_takes(UIList):
         row = layout.row(align=True)
         star = "SOLO_ON" if item.is_starred else "SOLO_OFF"
         row.prop(item, "is_starred", text="", icon=star, emboss=False)
-        split = row.split(factor=0.6, align=True)
+        split = row.split(factor=0.62, align=True)
         if is_missing(item):
             split.label(text=item.name, icon="ERROR")
             split.label(text="missing")
             return
         split.label(text=item.name)
-        split.label(text=f"{text.duration(item.duration_s)} {item.match}".strip())
+        seconds = split.row(align=True)
+        seconds.alignment = "RIGHT"
+        seconds.label(text=text.duration(item.duration_s))
+        row.label(text="", icon=_MATCH_ICONS.get(item.match, "BLANK1"))
 
 
 class SPARSEMOCAP_PT_take(StepPanel, Panel):

@@ -75,8 +75,8 @@ def watch_draws() -> dict[str, int]:
 def watch_latency() -> None:
     show = live_scene._show
 
-    def timed(armature: bpy.types.Object, pose: object) -> None:
-        show(armature, pose)
+    def timed(armature: bpy.types.Object, figure: object, pose: object) -> None:
+        show(armature, figure, pose)
         shown_late_s.append(time.perf_counter() - pose.time_s)
 
     live_scene._show = timed

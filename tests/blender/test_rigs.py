@@ -60,6 +60,10 @@ def test_limbs_point_where_the_solvers_do_on_rigify():
     print(f"metarig: {degrees:.2f} degrees")
     assert degrees <= _MEAN_DEG
     generated = rigs.rigify_rig()
+    character = addon("scene.binding").bind(bpy.context, generated).character
+    trunk = ("root", "lowerback", "upperback", "thorax", "lowerneck", "head")
+    controls = ("spine_fk", "spine_fk.001", "spine_fk.002", "spine_fk.003", "neck", "head")
+    assert tuple(character.joints[joint] for joint in trunk) == controls
     bake(generated)
     degrees = worst_mean_degrees(generated, _FK_RIGIFY)
     print(f"generated, FK: {degrees:.2f} degrees")
