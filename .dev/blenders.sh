@@ -10,10 +10,7 @@ verb_blender() {
   version=${1:-3.4}
   [ $# -eq 0 ] || shift
   need_blender "$version"
-  case $version in
-    3.4) make_release_files --quick ;;
-    *) make_release_files ;;
-  esac
+  make_release_files --quick
   cd "$ROOT"
   home=$ROOT/build/blender-$version
   mkdir -p "$home/config" "$home/scripts"
@@ -29,7 +26,7 @@ verb_blenders() {
   fi
   python313=$(find_python313)
   locked "$CACHE/lock" need_bpy
-  make_release_files
+  make_release_files --quick
   SYSTEM_PATH=$PATH
   for version in ${*:-3.4 4.3 5.2}; do
     need_blender "$version"

@@ -97,7 +97,7 @@ pack_release_files() {
 release_file_for() {
   for path in "$ROOT"/build/packages/*.zip; do
     case $1:$path in
-      3.4:*-legacy-*) echo "$path" ;;
+      3.4:*-legacy-$THIS_TARGET.zip) echo "$path" ;;
       3.4:* | *-legacy-*) ;;
       *) echo "$path" ;;
     esac
