@@ -53,7 +53,6 @@ if TYPE_CHECKING:
         driver_options,
         drop_from_database,
         filtered_at,
-        find_motion_files,
         gravity_directions,
         guided_movements,
         host_times,
@@ -64,7 +63,6 @@ if TYPE_CHECKING:
         playback_best_path,
         read_mapping,
         read_model,
-        read_motion,
         remove_model,
         simulate,
         site_names,
@@ -87,6 +85,7 @@ if TYPE_CHECKING:
     from .databases import add_to_database, build_database
     from .mappings import forget_mapping, mapping_folder, remember_mapping, to_standard
     from .methods import MethodInfo, OptionInfo, method_info
+    from .motion_files import find_motion_files, read_motion
     from .noise import NoiseModel, noise_presets, noisy
     from .positions import read_positions, write_positions
     from .reconstruction import LiveReconstructor, reconstruct
@@ -197,6 +196,7 @@ _PYTHON_HOMES = {
     **dict.fromkeys(
         ("forget_mapping", "mapping_folder", "remember_mapping", "to_standard"), ".mappings"
     ),
+    **dict.fromkeys(("find_motion_files", "read_motion"), ".motion_files"),
     "aligned": ".alignment",
     **dict.fromkeys(("body_of_motion", "read_body", "write_body"), ".body_file"),
     **dict.fromkeys(("add_to_database", "build_database"), ".databases"),

@@ -2,13 +2,14 @@
 """The compiled core: motion databases."""
 
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path as _Path
 from typing import TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._core_model import Model
-from ._core_motion import Motion, Skeleton
+from ._core_motion import Motion, ReadOptions, Skeleton
 from ._core_types import Path, ProgressCallback
 
 class Clip:
@@ -80,15 +81,17 @@ class MotionDatabase:
     def other_tensors(self) -> list[tuple[str, str, tuple[int, ...], int]]:
         """Tensors that other programs put into the file: name, element type, shape, bytes."""
 
-def find_motion_files(sources: Sequence[Path], exclude: Sequence[str] = ()) -> list[Path]:
+def find_motion_files(
+    sources: Sequence[Path], exclude: Sequence[str] = (), read: ReadOptions = ...
+) -> list[_Path]:
     """The motion files that the sources are or hold, without those excluded, sorted.
 
     Raises FormatError when a source does not exist or nothing is left.
     """
 
 def named_motion_files(
-    sources: Sequence[Path], exclude: Sequence[str] = ()
-) -> list[tuple[Path, str]]:
+    sources: Sequence[Path], exclude: Sequence[str] = (), read: ReadOptions = ...
+) -> list[tuple[_Path, str]]:
     """As find_motion_files, each with the name that its clips have as their source."""
 
 class ProgressReport:
@@ -112,7 +115,7 @@ class BuildReport:
 
     num_files, source_frames and source_bytes are what it took in, num_clips and num_frames what
     the database holds; num_known files were in already, num_replaced of num_files took the place
-    of what they held before. skipped (unusable) and duplicates are (path, reason).
+    of what they held before. skipped (unusable), duplicates and doubtful are (path, reason).
     """
 
     num_files: int
@@ -125,6 +128,7 @@ class BuildReport:
     elapsed_s: float
     skipped: list[tuple[str, str]]
     duplicates: list[tuple[str, str]]
+    doubtful: list[tuple[str, str]]
     warnings: list[str]
 
 class _ImportOptions(TypedDict, total=False):
@@ -138,6 +142,7 @@ class _ImportOptions(TypedDict, total=False):
     num_threads: int
     by_hand: dict[str, str]
     mappings: Path | None
+    read: ReadOptions
     progress: ProgressCallback | None
     details: Callable[[ProgressReport], object] | None
 
@@ -150,19 +155,20 @@ def build_database(
     reverse: bool = False,
     tempo_copies: Sequence[float] = (0.8, 1.25),
     exclude: Sequence[str] = (),
-    labels: Mapping[str, tuple[str, str, str, str]] = ...,
+    labels: Mapping[str, tuple[str, str, str, str, float]] = ...,
     label_warnings: Sequence[str] = (),
     **options: Unpack[_ImportOptions],
 ) -> BuildReport:
     """Builds a database from motion files, or folders of them, and writes it to output.
 
     rate_hz is the database's frame rate; mirror, reverse and tempo_copies (factors) add copies of
-    each clip; exclude: glob patterns of files to leave out; labels: actor, class, origin and
-    license by a motion file's path. strict: the first file that cannot be used ends it, otherwise
-    it is skipped; keep_duplicates: files with the same motion are all taken; num_threads 0: one
-    for each processor; by_hand: the source's joint by standard joint; mappings: the file of
-    remembered mappings. Raises FormatError, and Cancelled if progress returns False; the output
-    is then left as it was.
+    each clip; exclude: glob patterns of files to leave out; labels: actor, class, origin, license
+    and the rate (Hz, 0: not said) by a motion file's path. strict: the first file that cannot be
+    used or is doubtful ends it, otherwise it is skipped or taken with a warning; keep_duplicates:
+    files with the same motion are all taken; num_threads 0: one for each processor; by_hand: the
+    source's joint by standard joint; mappings: the file of remembered mappings; read: what the
+    files do not say. Raises FormatError, and Cancelled if progress returns False; the output is
+    then left as it was.
     """
 
 def add_to_database(
@@ -171,7 +177,7 @@ def add_to_database(
     output: Path | None = None,
     *,
     exclude: Sequence[str] = (),
-    labels: Mapping[str, tuple[str, str, str, str]] = ...,
+    labels: Mapping[str, tuple[str, str, str, str, float]] = ...,
     label_warnings: Sequence[str] = (),
     rebuild: bool = False,
     **options: Unpack[_ImportOptions],

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The compiled core: skeletons, motions and their files."""
 
+from collections.abc import Callable, Mapping
+from pathlib import Path as _Path
+
 from numpy.typing import ArrayLike
 
 from ._core_types import Floats, Path
@@ -74,21 +77,31 @@ class Motion:
     def mirrored(self) -> Motion:
         """The movement seen in a mirror at x = 0: left and right joints change places."""
 
-def read_motion(
-    path: Path,
-    *,
-    amc_rate_hz: float = 120.0,
-    unit_m: float | None = None,
-    up: str = "y",
-    asf: Path | None = None,
-    allow_no_frames: bool = False,
-) -> tuple[Motion, list[str]]:
-    """The file's motion on its own skeleton, and warnings. Raises FormatError.
+class ReadOptions:
+    """What motion files do not say of themselves.
 
-    unit_m: metres a unit of the file (None: what an .asf says, 0.01 for .bvh); up: the file's up
-    axis, what is read has y up; asf: the skeleton of an .amc (None: the one found beside it). With
-    allow_no_frames a skeleton alone, also an .asf, is a motion without frames.
+    amc_rate_hz: frames per second of .amc files; unit_m: metres a unit of the file (None: what an
+    .asf says, 0.01 for .bvh); up: the file's up axis, what is read has y up; asf: the skeleton of
+    .amc files (None: the one found beside each); allow_no_frames: a skeleton alone, also an .asf,
+    is a motion without frames; rate_hz: the rate whatever the file says; further_readers: functions
+    that read files of other endings and return the motion and warnings.
     """
+
+    def __init__(
+        self,
+        *,
+        amc_rate_hz: float = 120.0,
+        unit_m: float | None = None,
+        up: str = "y",
+        asf: Path | None = None,
+        allow_no_frames: bool = False,
+        rate_hz: float | None = None,
+        further_readers: Mapping[str, Callable[[_Path], tuple[Motion, list[str]]]] = ...,
+    ) -> None:
+        """Raises ConfigError naming what is out of its range."""
+
+def read_motion(path: Path, options: ReadOptions = ...) -> tuple[Motion, list[str]]:
+    """The file's motion on its own skeleton, and warnings. Raises FormatError."""
 
 def write_bvh(path: Path, motion: Motion) -> None:
     """Writes atomically, in centimetres."""

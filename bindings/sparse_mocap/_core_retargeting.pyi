@@ -78,6 +78,13 @@ class SkeletonMapping:
         standard is what to_standard made of the motion. Raises ValueError for a motion of a
         skeleton with other joints.
         """
+    def faults(self, motion: Motion, standard: Motion) -> list[str]:
+        """Returns what makes a motion doubtful, one line each, the worst first.
+
+        Limbs that stray from the file's, a body that lies or stands on its head in every frame,
+        sides that are mixed up, speeds that are no person's; standard is what to_standard made of
+        it.
+        """
 
 def map_skeleton(motion: Motion, by_hand: dict[str, str] = ...) -> SkeletonMapping:
     """Returns the mapping of a motion's skeleton, with the rest poses aligned.

@@ -22,10 +22,11 @@ from typing import Any
 
 import numpy as np
 
-from ._core import Body, ConfigError, FormatError, read_motion, standard_joint_names
+from ._core import Body, ConfigError, FormatError, standard_joint_names
 from .files import write_text
 from .json_keys import unique_keys
 from .mappings import to_standard
+from .motion_files import read_motion
 from .table_errors import TableError, read_lines
 
 __all__ = ["BodyFileError", "body_of_motion", "read_body", "write_body"]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from . import _core
 from .labels import find_labels
+from .motion_files import read_options
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -42,16 +43,18 @@ def build_database(
     more; exclude: glob patterns of file names to leave out; metadata: a table of labels
     file,actor,class,source,license (None: metadata.csv of the source folders).
 
-    Further options: strict stops at the first file that cannot be used; keep_duplicates also takes
-    files whose motion is there already; num_threads (0: one a processor; the file is the same);
-    by_hand: joints for skeletons that have them all; mappings: a folder of mappings by hand for
-    others; progress(done, total, what) may return False to cancel; details gets each ProgressReport
-    before progress is called.
+    Further options: strict stops at the first file that cannot be used or whose motion is doubtful
+    (check_clip in the core has the limits); read: what the files do not say (see read_options);
+    keep_duplicates also takes files whose motion is there already; num_threads (0: one a processor;
+    the file is the same); by_hand: joints for skeletons that have them all; mappings: a folder of
+    mappings by hand for others; progress(done, total, what) may return False to cancel; details
+    gets each ProgressReport before progress is called.
 
     Raises FormatError (nothing usable, or strict), ConfigError, Cancelled and OSError; output is
     untouched then.
     """
     labels, warnings = find_labels(sources, exclude, metadata)
+    options.setdefault("read", read_options())
     return _core.build_database(
         sources,
         output,
@@ -84,6 +87,7 @@ def add_to_database(
     own files among the sources too. Options and errors as for build_database.
     """
     labels, warnings = find_labels(sources, exclude, metadata)
+    options.setdefault("read", read_options())
     return _core.add_to_database(
         database,
         sources,

@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ._core import FormatError, MappingError, Motion, SkeletonMapping, read_motion
+from ._core import FormatError, MappingError, Motion, SkeletonMapping
 from .mappings import find_mapping
+from .motion_files import read_motion
 
 __all__ = ["Inspection", "inspect_motion"]
 
@@ -70,13 +71,19 @@ class Inspection:
         }
 
 
-def inspect_motion(path: Path, by_hand: Mapping[str, str] | None = None) -> Inspection:
+def inspect_motion(
+    path: Path,
+    by_hand: Mapping[str, str] | None = None,
+    reading: Mapping[str, Any] | None = None,
+) -> Inspection:
     """Reads a motion file and transfers it to the standard skeleton.
+
+    reading: keyword arguments of read_motion. The warnings end with what makes the motion doubtful.
 
     A file that cannot be read or mapped has a ``refusal``. Raises OSError.
     """
     try:
-        motion, warnings = read_motion(path)
+        motion, warnings = read_motion(path, **(reading or {}))
     except FormatError as error:
         return Inspection(path, refusal=str(error))
     try:
@@ -95,5 +102,5 @@ def inspect_motion(path: Path, by_hand: Mapping[str, str] | None = None) -> Insp
             limb: (math.degrees(mean), math.degrees(worst))
             for limb, (mean, worst) in errors.items()
         },
-        warnings=(*warnings, *notes, *more),
+        warnings=(*warnings, *notes, *more, *mapping.faults(motion, standard)),
     )

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Labels of motion files: what a table beside them says and their names do not.
 
-The table is UTF-8 CSV with the header ``file,actor,class,source,license``, any of these in any
-order, ``file`` needed. A file is named by its path in the source folder, its file name or its name
-without the ending, in any case; the longest that fits counts. What is left empty is not said.
+The table is UTF-8 CSV with the header ``file,actor,class,source,license,rate_hz``, any of these in
+any order, ``file`` needed. rate_hz is the rate of the recording, whatever its file says. The index
+of the CMU database (``Subject,Trial #,Motion Description,framerate,...``) is understood as it is.
+A file is named by its path in the source folder, its file name or its name without the ending, in
+any case; the longest that fits counts. What is left empty is not said.
 """
 
 from __future__ import annotations
@@ -17,14 +19,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from ._core import named_motion_files
+from .motion_files import named_motion_files
 from .table_errors import TableError, read_lines
 
 __all__ = ["LabelRow", "Labels", "find_labels", "read_labels"]
 
 TABLE_NAME = "metadata.csv"
 """The table that is read where it lies in a source folder."""
-COLUMNS = ("file", "actor", "class", "source", "license")
+COLUMNS = ("file", "actor", "class", "source", "license", "rate_hz")
+_CMU_COLUMNS = {"subject": "subject", "trial #": "trial", "motion description": "class",
+                "framerate": "rate_hz"}  # fmt: skip
 
 
 class Labels(NamedTuple):
@@ -34,6 +38,7 @@ class Labels(NamedTuple):
     motion_class: str = ""
     origin: str = ""
     license: str = ""
+    rate_hz: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -151,6 +156,9 @@ def _fields(path: str | os.PathLike[str], line: int, text: str) -> list[str]:
 
 
 def _columns(path: str | os.PathLike[str], line: int, header: list[str]) -> list[str]:
+    lowered = [field.lower() for field in header]
+    if {"subject", "trial #"} <= set(lowered):
+        return [_CMU_COLUMNS.get(field, "") for field in lowered]
     columns: list[str] = []
     for field in header:
         name = field.lower()
@@ -183,10 +191,27 @@ def _row(
             " put text that holds a comma within quotes",
         )
     said = dict.fromkeys(COLUMNS, "") | dict(zip(columns, fields, strict=True))
+    if "subject" in said:
+        said["file"] = f"{said['subject']:0>2}_{said['trial']:0>2}"
     if not said["file"]:
         raise TableError(path, line, "names no file; write its name or leave the row out")
-    labels = Labels(said["actor"], said["class"], said["source"], said["license"])
+    rate_hz = _rate_hz(path, line, said["rate_hz"])
+    labels = Labels(said["actor"], said["class"], said["source"], said["license"], rate_hz)
     return LabelRow(line, said["file"], labels)
+
+
+def _rate_hz(path: str | os.PathLike[str], line: int, text: str) -> float:
+    if not text:
+        return 0.0
+    try:
+        rate_hz = float(text)
+    except ValueError:
+        rate_hz = 0.0
+    if not 1.0 <= rate_hz <= 10_000.0:
+        raise TableError(
+            path, line, f"rate_hz is {_quoted(text)}; write frames per second from 1 to 10000"
+        )
+    return rate_hz
 
 
 def _quoted(text: str) -> str:

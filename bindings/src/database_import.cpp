@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <array>
 #include <map>
+#include <tuple>
 
 #include "common.hpp"
 #include "sparse_mocap/database/builder.hpp"
@@ -12,37 +12,44 @@ namespace {
 namespace fs = std::filesystem;
 using Paths = std::vector<fs::path>;
 using Callback = std::optional<py::function>;
-using Labels = std::map<fs::path, std::array<std::string, 4>>;  // actor, class, origin, license
+// actor, class, origin, license; rate in Hz, 0: not said
+using Labels =
+    std::map<fs::path, std::tuple<std::string, std::string, std::string, std::string, double>>;
 
 ImportOptions import_options(const std::vector<std::string>& exclude, bool strict,
                              bool keep_duplicates, int num_threads, const Labels& labels,
                              const std::vector<std::string>& label_warnings,
-                             const JointNames& by_hand, const std::optional<fs::path>& mappings) {
+                             const JointNames& by_hand, const std::optional<fs::path>& mappings,
+                             const ReadOptions& read) {
   ImportOptions options;
   options.exclude = exclude;
   options.is_strict = strict;
   options.keep_duplicates = keep_duplicates;
   options.num_threads = num_threads;
-  for (const auto& [path, said] : labels)
-    options.labels[path] = {said[0], said[1], said[2], said[3]};
+  for (const auto& [path, said] : labels) {
+    const auto& [actor, motion_class, origin, license, rate_hz] = said;
+    options.labels[path] = {actor, motion_class, origin, license, rate_hz};
+  }
   options.label_warnings = label_warnings;
   options.mapping = {by_hand, mappings.value_or(fs::path())};
+  options.read = read;
   return options;
 }
 
 // Each with its name in a database.
 std::vector<std::pair<fs::path, py::str>> named_motion_files(
-    const Paths& sources, const std::vector<std::string>& exclude) {
+    const Paths& sources, const std::vector<std::string>& exclude, const ReadOptions& read) {
   std::vector<std::pair<fs::path, py::str>> named;
-  for (const auto& file : find_source_files(sources, exclude))
+  for (const auto& file : find_source_files(sources, exclude, read))
     named.emplace_back(file.path, text_of(file.name));
   return named;
 }
 
-Paths motion_files(const Paths& sources, const std::vector<std::string>& exclude) {
+Paths motion_files(const Paths& sources, const std::vector<std::string>& exclude,
+                   const ReadOptions& read) {
   const py::gil_scoped_release release;
   Paths paths;
-  for (const auto& file : find_source_files(sources, exclude)) paths.push_back(file.path);
+  for (const auto& file : find_source_files(sources, exclude, read)) paths.push_back(file.path);
   return paths;
 }
 
@@ -51,10 +58,10 @@ BuildReport build(const Paths& sources, const fs::path& output, double rate_hz, 
                   const std::vector<std::string>& exclude, bool strict, bool keep_duplicates,
                   int num_threads, const Labels& labels,
                   const std::vector<std::string>& label_warnings, const JointNames& by_hand,
-                  const std::optional<fs::path>& mappings, const Callback& callback,
-                  const Callback& details) {
+                  const std::optional<fs::path>& mappings, const ReadOptions& read,
+                  const Callback& callback, const Callback& details) {
   BuildOptions options{import_options(exclude, strict, keep_duplicates, num_threads, labels,
-                                      label_warnings, by_hand, mappings)};
+                                      label_warnings, by_hand, mappings, read)};
   options.rate_hz = rate_hz;
   options.add_mirrored = mirror;
   options.add_reversed = reverse;
@@ -68,10 +75,10 @@ BuildReport add(const fs::path& database, const Paths& sources,
                 const std::optional<fs::path>& output, const std::vector<std::string>& exclude,
                 bool strict, bool keep_duplicates, int num_threads, const Labels& labels,
                 const std::vector<std::string>& label_warnings, const JointNames& by_hand,
-                const std::optional<fs::path>& mappings, bool rebuild, const Callback& callback,
-                const Callback& details) {
+                const std::optional<fs::path>& mappings, const ReadOptions& read, bool rebuild,
+                const Callback& callback, const Callback& details) {
   const ImportOptions options = import_options(exclude, strict, keep_duplicates, num_threads,
-                                               labels, label_warnings, by_hand, mappings);
+                                               labels, label_warnings, by_hand, mappings, read);
   const Progress progress = progress_from(callback, details);
   const py::gil_scoped_release release;
   const auto change = rebuild ? &rebuild_database : &add_to_database;
@@ -117,7 +124,7 @@ bytes of num_bytes are read, over all passes.)doc")
 
 num_files, source_frames and source_bytes are what it took in, num_clips and num_frames what
 the database holds; num_known files were in already, num_replaced of num_files took the place
-of what they held before. skipped (unusable) and duplicates are (path, reason).)doc")
+of what they held before. skipped (unusable), duplicates and doubtful are (path, reason).)doc")
       .def_readonly("num_files", &BuildReport::num_files, "Files read.")
       .def_readonly("num_known", &BuildReport::num_known, "Files that were in it already.")
       .def_readonly("num_replaced", &BuildReport::num_replaced,
@@ -134,6 +141,9 @@ of what they held before. skipped (unusable) and duplicates are (path, reason).)
           "duplicates", [](const BuildReport& r) { return pairs_of(r.duplicates); },
           "Files whose motion was there already, and where.")
       .def_property_readonly(
+          "doubtful", [](const BuildReport& r) { return pairs_of(r.doubtful); },
+          "Files taken in whose motion is doubtful, and why; the worst first.")
+      .def_property_readonly(
           "warnings", [](const BuildReport& r) { return texts_of(r.warnings); }, "One line each.");
 }
 
@@ -143,11 +153,12 @@ void bind_database_import(py::module_& m) {
   bind_reports(m);
   const std::vector<std::string> no_patterns;
   m.def("find_motion_files", &motion_files, py::arg("sources"), py::arg("exclude") = no_patterns,
+        py::arg("read") = ReadOptions(),
         R"doc(The motion files that the sources are or hold, without those excluded, sorted.
 
 Raises FormatError when a source does not exist or nothing is left.)doc");
   m.def("named_motion_files", &named_motion_files, py::arg("sources"),
-        py::arg("exclude") = no_patterns,
+        py::arg("exclude") = no_patterns, py::arg("read") = ReadOptions(),
         R"doc(As find_motion_files, each with the name that its clips have as their source.)doc");
   m.def("build_database", &build, py::arg("sources"), py::arg("output"), py::kw_only(),
         py::arg("rate_hz") = 25.0, py::arg("mirror") = false, py::arg("reverse") = false,
@@ -155,23 +166,25 @@ Raises FormatError when a source does not exist or nothing is left.)doc");
         py::arg("strict") = false, py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
         py::arg("labels") = Labels(), py::arg("label_warnings") = no_patterns,
         py::arg("by_hand") = JointNames(), py::arg("mappings") = py::none(),
-        py::arg("progress") = py::none(), py::arg("details") = py::none(),
+        py::arg("read") = ReadOptions(), py::arg("progress") = py::none(),
+        py::arg("details") = py::none(),
         R"doc(Builds a database from motion files, or folders of them, and writes it to output.
 
 rate_hz is the database's frame rate; mirror, reverse and tempo_copies (factors) add copies of
-each clip; exclude: glob patterns of files to leave out; labels: actor, class, origin and
-license by a motion file's path. strict: the first file that cannot be used ends it, otherwise
-it is skipped; keep_duplicates: files with the same motion are all taken; num_threads 0: one
-for each processor; by_hand: the source's joint by standard joint; mappings: the file of
-remembered mappings. Raises FormatError, and Cancelled if progress returns False; the output
-is then left as it was.)doc");
+each clip; exclude: glob patterns of files to leave out; labels: actor, class, origin, license
+and the rate (Hz, 0: not said) by a motion file's path. strict: the first file that cannot be
+used or is doubtful ends it, otherwise it is skipped or taken with a warning; keep_duplicates:
+files with the same motion are all taken; num_threads 0: one for each processor; by_hand: the
+source's joint by standard joint; mappings: the file of remembered mappings; read: what the
+files do not say. Raises FormatError, and Cancelled if progress returns False; the output is
+then left as it was.)doc");
   m.def("add_to_database", &add, py::arg("database"), py::arg("sources"),
         py::arg("output") = py::none(), py::kw_only(), py::arg("exclude") = no_patterns,
         py::arg("strict") = false, py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
         py::arg("labels") = Labels(), py::arg("label_warnings") = no_patterns,
         py::arg("by_hand") = JointNames(), py::arg("mappings") = py::none(),
-        py::arg("rebuild") = false, py::arg("progress") = py::none(),
-        py::arg("details") = py::none(),
+        py::arg("read") = ReadOptions(), py::arg("rebuild") = false,
+        py::arg("progress") = py::none(), py::arg("details") = py::none(),
         R"doc(Adds motion files to a database, with the copies that it was built with.
 
 output: where the result goes, None: in its place. rebuild: the sources hold the database's own

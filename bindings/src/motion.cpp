@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common.hpp"
 #include "sparse_mocap/base/text_scanner.hpp"
-#include "sparse_mocap/formats/acclaim.hpp"
 #include "sparse_mocap/formats/acclaim_writer.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
@@ -88,6 +87,7 @@ Skeleton skeleton_at_rest(const std::vector<std::string>& names, const std::vect
     Joint& joint = joints[static_cast<std::size_t>(j)];
     joint.name = names[static_cast<std::size_t>(j)];
     joint.parent = parents[static_cast<std::size_t>(j)];
+    joint.axes = {Axis::z, Axis::x, Axis::y};
     const Vec3 pivot(p(j, 0), p(j, 1), p(j, 2));
     joint.bone = Vec3(e(j, 0), e(j, 1), e(j, 2)) - pivot;
     const auto q = static_cast<py::ssize_t>(joint.parent);
@@ -118,22 +118,6 @@ py::array_t<double> positions_of(const Motion& motion, const std::string& frame_
   return out;
 }
 
-// The same movement with lengths and world axes changed: every frame of the skeleton turns along.
-void change_world(Motion& motion, double factor, const Quat& C) {
-  const auto changed = [&](const Vec3& v) -> Vec3 { return factor * (C * v); };
-  auto joints = motion.skeleton.joints();
-  for (auto& joint : joints) {
-    joint.offset_parent = changed(joint.offset_parent);
-    joint.bone = changed(joint.bone);
-    joint.R_joint_axes = C * joint.R_joint_axes;
-  }
-  motion.skeleton = Skeleton(std::move(joints));
-  for (auto& position : motion.root_positions) position = changed(position);
-  for (auto& rotation : motion.rotations) rotation = C * rotation * C.conjugate();
-  for (auto& track : motion.offset_tracks)
-    for (auto& offset : track.offset_parent) offset = changed(offset);
-}
-
 Axis axis_named(const std::string& name) {
   if (name == "x") return Axis::x;
   if (name == "y") return Axis::y;
@@ -141,41 +125,46 @@ Axis axis_named(const std::string& name) {
   throw py::value_error("up must be x, y or z, got '" + name + "'");
 }
 
-bool has_ending(const std::filesystem::path& path, std::string_view ending) {
-  return equal_ignoring_case(path.extension().string(), ending);
+// A reader written in Python gives the motion and its warnings, as read_motion does. The function
+// is shared, since threads that do not hold the GIL copy the options.
+FurtherReader reader_from(const py::function& function) {
+  const auto shared = std::make_shared<py::function>(function);
+  return [shared](const std::filesystem::path& path, const ReadOptions&) {
+    const py::gil_scoped_acquire acquire;
+    try {
+      auto [motion, texts] = (*shared)(path).cast<std::pair<Motion, std::vector<std::string>>>();
+      MotionFile file{std::move(motion), {}};
+      for (const auto& text : texts) file.warnings.push_back({{path}, text});
+      return file;
+    } catch (const py::error_already_set& error) {
+      const std::string begin = path.string() + ": ";
+      std::string text = py::str(error.value()).cast<std::string>();
+      if (text.starts_with(begin)) text.erase(0, begin.size());
+      throw FormatError({path}, text);
+    }
+  };
 }
 
-// An .asf alone is a skeleton without frames; an .amc is read with its .asf.
-MotionFile read_acclaim(const std::filesystem::path& path,
-                        const std::optional<std::filesystem::path>& asf,
-                        std::optional<double> unit_m, Axis up, const ReadOptions& options) {
-  const bool is_skeleton = has_ending(path, ".asf");
-  const auto skeleton = read_asf(is_skeleton ? path : asf ? *asf : find_asf(path), options);
-  MotionFile file;
-  if (is_skeleton) {
-    file = {{skeleton.skeleton, 1.0 / options.amc_rate_hz, {}, {}, {}}, skeleton.warnings};
-  } else {
-    file = asf ? read_amc(path, skeleton, options) : read_motion_file(path, options);
-  }
-  const double factor = unit_m ? *unit_m / skeleton.metres_per_unit : 1.0;
-  if (up == Axis::y)
-    change_world(file.motion, factor, Quat::Identity());
-  else
-    change_world(file.motion, factor, Quat::FromTwoVectors(unit(up), Vec3::UnitY()));
-  return file;
-}
-
-std::pair<Motion, std::vector<std::string>> read_motion(
-    const std::filesystem::path& path, double amc_rate_hz, std::optional<double> unit_m,
-    const std::string& up, const std::optional<std::filesystem::path>& asf, bool allow_no_frames) {
+ReadOptions read_options(double amc_rate_hz, std::optional<double> unit_m, const std::string& up,
+                         const std::optional<std::filesystem::path>& asf, bool allow_no_frames,
+                         std::optional<double> rate_hz,
+                         const std::map<std::string, py::function>& further_readers) {
   ReadOptions options;
   options.amc_rate_hz = amc_rate_hz;
-  options.bvh_unit_m = unit_m.value_or(options.bvh_unit_m);
-  options.bvh_up = axis_named(up);
+  options.unit_m = unit_m;
+  options.up = axis_named(up);
+  options.asf = asf.value_or(std::filesystem::path());
   options.allow_no_frames = allow_no_frames;
-  const bool is_acclaim = has_ending(path, ".amc") || (allow_no_frames && has_ending(path, ".asf"));
-  MotionFile file = is_acclaim ? read_acclaim(path, asf, unit_m, options.bvh_up, options)
-                               : read_motion_file(path, options);
+  options.rate_hz = rate_hz;
+  for (const auto& [ending, function] : further_readers)
+    options.further_readers.emplace(ending, reader_from(function));
+  options.validate();
+  return options;
+}
+
+std::pair<Motion, std::vector<std::string>> read_motion(const std::filesystem::path& path,
+                                                        const ReadOptions& options) {
+  MotionFile file = read_motion_file(path, options);
   std::vector<std::string> warnings;
   for (const auto& warning : file.warnings) warnings.push_back(warning.message());
   return {std::move(file.motion), std::move(warnings)};
@@ -260,14 +249,20 @@ A zero-phase Gaussian low-pass comes first where the rate goes down.)doc")
 
 void bind_motion_files(py::module_& m) {
   using release = py::call_guard<py::gil_scoped_release>;
-  m.def("read_motion", &read_motion, py::arg("path"), py::kw_only(), py::arg("amc_rate_hz") = 120.0,
-        py::arg("unit_m") = py::none(), py::arg("up") = "y", py::arg("asf") = py::none(),
-        py::arg("allow_no_frames") = false, release(),
-        R"doc(The file's motion on its own skeleton, and warnings. Raises FormatError.
+  py::class_<ReadOptions>(m, "ReadOptions", R"doc(What motion files do not say of themselves.
 
-unit_m: metres a unit of the file (None: what an .asf says, 0.01 for .bvh); up: the file's up
-axis, what is read has y up; asf: the skeleton of an .amc (None: the one found beside it). With
-allow_no_frames a skeleton alone, also an .asf, is a motion without frames.)doc");
+amc_rate_hz: frames per second of .amc files; unit_m: metres a unit of the file (None: what an .asf
+says, 0.01 for .bvh); up: the file's up axis, what is read has y up; asf: the skeleton of .amc files
+(None: the one found beside each); allow_no_frames: a skeleton alone, also an .asf, is a motion
+without frames; rate_hz: the rate whatever the file says; further_readers: functions that read files
+of other endings and return the motion and warnings.)doc")
+      .def(py::init(&read_options), py::kw_only(), py::arg("amc_rate_hz") = 120.0,
+           py::arg("unit_m") = py::none(), py::arg("up") = "y", py::arg("asf") = py::none(),
+           py::arg("allow_no_frames") = false, py::arg("rate_hz") = py::none(),
+           py::arg("further_readers") = std::map<std::string, py::function>(),
+           "Raises ConfigError naming what is out of its range.");
+  m.def("read_motion", &read_motion, py::arg("path"), py::arg("options") = ReadOptions(), release(),
+        R"doc(The file's motion on its own skeleton, and warnings. Raises FormatError.)doc");
   m.def("write_bvh", &write_bvh, py::arg("path"), py::arg("motion"), release(),
         "Writes atomically, in centimetres.");
   m.def(

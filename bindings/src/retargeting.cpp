@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common.hpp"
+#include "sparse_mocap/database/clip_check.hpp"
 #include "sparse_mocap/formats/mapping_file.hpp"
 #include "sparse_mocap/retargeting/foot_lock.hpp"
 #include "sparse_mocap/retargeting/limb_errors.hpp"
@@ -93,6 +94,15 @@ std::map<std::string, std::pair<double, double>> errors_of(const Mapping& mappin
   return out;
 }
 
+std::vector<std::string> faults_of(const Mapping& mapping, const Motion& motion,
+                                   const Motion& standard) {
+  require_same_skeleton(mapping, motion);
+  std::vector<std::string> lines;
+  for (const ClipFault& fault : check_clip(motion, mapping.found, standard))
+    lines.push_back(fault.text);
+  return lines;
+}
+
 using release = py::call_guard<py::gil_scoped_release>;
 
 void bind_mapping_class(py::module_& m) {
@@ -157,7 +167,12 @@ of a skeleton with other joints.)doc")
 
 By the standard joint of each thigh, shank, upper arm and forearm, over all frames;
 standard is what to_standard made of the motion. Raises ValueError for a motion of a
-skeleton with other joints.)doc");
+skeleton with other joints.)doc")
+      .def("faults", &faults_of, py::arg("motion"), py::arg("standard"), release(),
+           R"doc(Returns what makes a motion doubtful, one line each, the worst first.
+
+Limbs that stray from the file's, a body that lies or stands on its head in every frame, sides
+that are mixed up, speeds that are no person's; standard is what to_standard made of it.)doc");
 }
 
 void bind_mapping_functions(py::module_& m) {

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import os
+import tempfile
+import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +15,7 @@ from .core import core
 from .errors import InputError
 from .file_cache import FileCache
 from .job import Job, Progress
+from .steps import Steps
 
 SUFFIX = ".smdb"
 BUILDING = "Building the motion database"
@@ -85,6 +88,37 @@ class BuildSummary:
         return "\n".join(lines) + "\n"
 
 
+def build_from_motions_steps(
+    motions: list[tuple[str, Any]], output: str, choices: BuildChoices
+) -> Steps[BuildSummary]:
+    """Build a database from named motions (sparse_mocap.Motion), and return what came of it.
+
+    A name is the clip's source, with "/" between its parts. Raises InputError and what a build
+    does.
+    """
+    if not motions:
+        raise InputError("No armature in this file has an action that moves its bones")
+    target = checked_output(output)
+    with tempfile.TemporaryDirectory(prefix="sparse_mocap_") as folder:
+        for done, (name, motion) in enumerate(motions):
+            path = Path(folder, *name.split("/"))
+            path = path.with_name(path.name + ".bvh")
+            path.parent.mkdir(parents=True, exist_ok=True)
+            core().write_bvh(path, motion)
+            yield 0.1 * done / len(motions)
+        job, _ = build_job([folder], target, choices)
+        job.start()
+        try:
+            while job.is_running:
+                time.sleep(0.01)
+                yield 0.1 + 0.9 * job.fraction
+        finally:
+            job.cancel()
+            job.join()
+        summary: BuildSummary = job.result()
+        return summary
+
+
 last_build: list[BuildSummary] = []
 """The summary of the last build, if there was one."""
 
@@ -118,9 +152,9 @@ def build_job(sources: list[str], output: str, choices: BuildChoices) -> tuple[J
             mappings=sparse_mocap.mapping_folder(),
             progress=progress,
         )
-        summary = BuildSummary(
-            target, report.num_files, report.num_clips, report.skipped, report.warnings
-        )
+        doubtful = [f"Doubtful: {reason}" for _, reason in report.doubtful]
+        warnings = doubtful + report.warnings
+        summary = BuildSummary(target, report.num_files, report.num_clips, report.skipped, warnings)
         last_build[:] = [summary]
         return summary
 

@@ -39,7 +39,7 @@ ReadOptions options_for(std::string_view input) {
   options.max_depth = 100;
   options.max_frames = 10'000;
   options.max_rotations = 100'000;
-  options.bvh_up = static_cast<Axis>((input.size() + 1) % 3);
+  options.up = static_cast<Axis>((input.size() + 1) % 3);
   options.allow_no_frames = input.size() % 2 == 0;
   return options;
 }

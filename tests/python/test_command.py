@@ -201,4 +201,4 @@ def test_patterns_are_not_replaced_by_names_of_files(
     words = ["database", "build", ".", "-o", "x.smdb", "--exclude", "*.txt"]
     monkeypatch.setattr(sys, "argv", ["sparse-mocap", *words])
     assert app.run() == 1
-    assert "holds no .bvh or .amc file" in capsys.readouterr().err
+    assert "holds no motion file" in capsys.readouterr().err

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 import numpy as np
@@ -17,7 +18,7 @@ from .. import (
     write_positions,
 )
 from .console import warn
-from .options import FilePath, check_ending, frame_option
+from .options import FilePath, check_ending, frame_option, reading_options
 
 __all__ = ["convert"]
 
@@ -36,10 +37,18 @@ __all__ = ["convert"]
 )  # fmt: skip
 @frame_option
 @click.option("--fps", type=float, help="Resample to this many frames per second.")
-def convert(clip: Path, output: Path, skeleton: str, frame: str, fps: float | None) -> None:
-    """Converts a motion file, .bvh or .amc."""
+@reading_options
+def convert(
+    clip: Path,
+    output: Path,
+    skeleton: str,
+    frame: str,
+    fps: float | None,
+    reading: dict[str, Any],
+) -> None:
+    """Converts a motion file: .bvh, .amc, .npz (SMPL, AMASS) or .mvnx."""
     ending = check_ending(output, ".bvh", ".amc", ".csv")
-    motion, warnings = read_motion(clip)
+    motion, warnings = read_motion(clip, **reading)
     if skeleton != "own":
         motion, more = to_standard(motion, MotionDatabase(skeleton).skeleton)
         warnings += more

@@ -20,9 +20,10 @@ from .. import (
     mapping_folder,
     read_mapping,
 )
+from ..motion_files import read_options
 from .console import import_bar, warn
 from .database_info import described, show
-from .options import FilePath
+from .options import FilePath, reading_options
 
 __all__ = ["add", "build", "database", "drop", "info_command"]
 
@@ -31,15 +32,18 @@ _IMPORT_OPTIONS = (
         "--exclude", metavar="GLOB", multiple=True,
         help="Exclude files with a matching name. Can be repeated.",
     ),
-    click.option("--strict", is_flag=True, help="Stop at the first file that cannot be used."),
+    click.option(
+        "--strict", is_flag=True,
+        help="Stop at the first file that cannot be used or whose motion is doubtful.",
+    ),
     click.option(
         "--keep-duplicates", is_flag=True,
         help="Keep files whose motion is already in the database, for example from another format.",
     ),
     click.option(
         "--metadata", type=FilePath,
-        help="A table with the columns file,actor,class,source,license; by default metadata.csv in"
-        " the source folder.",
+        help="A table with the columns file,actor,class,source,license,rate_hz, or the index of"
+        " the CMU database; by default metadata.csv in the source folder.",
     ),
     click.option(
         "--mapping", "mapping_path", metavar="MAP.json", type=FilePath,
@@ -54,13 +58,17 @@ _IMPORT_OPTIONS = (
 
 def _import_options(command: Callable[..., Any]) -> Callable[..., Any]:
     @functools.wraps(command)
-    def with_mappings(*args: Any, mapping_path: Path | None, **options: Any) -> Any:
+    def with_mappings(
+        *args: Any, mapping_path: Path | None, reading: dict[str, Any], **options: Any
+    ) -> Any:
         by_hand = read_mapping(mapping_path) if mapping_path else {}
-        return command(*args, by_hand=by_hand, mappings=mapping_folder(), **options)
+        read = read_options(**reading)
+        return command(*args, by_hand=by_hand, mappings=mapping_folder(), read=read, **options)
 
+    with_options = reading_options(with_mappings)
     for option in reversed(_IMPORT_OPTIONS):
-        with_mappings = option(with_mappings)
-    return with_mappings
+        with_options = option(with_options)
+    return with_options
 
 
 _output_option = click.option(
@@ -99,8 +107,8 @@ def build(
 ) -> None:
     """Builds a database from motion capture.
 
-    SOURCE is a .bvh or .amc file, or a folder, which is searched recursively. An .amc needs its
-    .asf in the same folder.
+    SOURCE is a .bvh, .amc, .npz (SMPL, AMASS) or .mvnx file, or a folder, which is searched
+    recursively. An .amc needs its .asf in the same folder.
     """
     if no_tempo_copies:
         options["tempo_copies"] = ()
@@ -176,10 +184,12 @@ def info_command(path: Path, as_json: bool) -> None:
 def _print(output: Path, report: BuildReport, rate_hz: float) -> None:
     warn([f"skipped: {reason}" for _, reason in report.skipped])
     warn([f"skipped: {reason}" for _, reason in report.duplicates])
+    warn([f"doubtful: {reason}" for _, reason in report.doubtful])
     warn(report.warnings)
     counts = {
         "skipped": len(report.skipped),
         "duplicates": len(report.duplicates),
+        "doubtful": len({path for path, _ in report.doubtful}),
         "unchanged": report.num_known,
         "replaced": report.num_replaced,
     }

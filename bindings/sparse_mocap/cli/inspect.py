@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 from rich.table import Table
@@ -18,7 +19,7 @@ from .. import (
 from ..inspection import Inspection, inspect_motion
 from .console import print_table, progress_bar, write_json
 from .faults import Fault
-from .options import FilePath, OutputPath
+from .options import FilePath, OutputPath, reading_options
 
 __all__ = ["inspect"]
 
@@ -42,6 +43,7 @@ __all__ = ["inspect"]
     "--plot", type=OutputPath(),
     help="Also draw six frames of each file, its own skeleton next to the standard one (.png).",
 )  # fmt: skip
+@reading_options
 def inspect(
     sources: tuple[Path, ...],
     mapping_path: Path | None,
@@ -50,11 +52,12 @@ def inspect(
     forget: bool,
     json_path: Path | None,
     plot: Path | None,
+    reading: dict[str, Any],
 ) -> None:
     """Shows the content of motion files and how their joints are mapped.
 
-    SOURCE is a .bvh or .amc file, or a folder, which is searched recursively. Errors are angles
-    between limbs of the file and of the standard skeleton.
+    SOURCE is a .bvh, .amc, .npz (SMPL, AMASS) or .mvnx file, or a folder, which is searched
+    recursively. Errors are angles between limbs of the file and of the standard skeleton.
     """
     if remember and mapping_path is None:
         raise click.UsageError("--remember needs --mapping")
@@ -67,7 +70,7 @@ def inspect(
         for done, path in enumerate(files):
             if not progress(done, len(files), path.name):
                 raise click.Abort
-            inspections.append(_inspect(path, by_hand, forget))
+            inspections.append(_inspect(path, by_hand, forget, reading))
     if json_path:
         write_json(json_path, [inspection.described() for inspection in inspections])
     if plot:
@@ -83,10 +86,12 @@ def inspect(
             _save(inspection, None, remember)
 
 
-def _inspect(path: Path, by_hand: dict[str, str] | None, forget: bool) -> Inspection:
-    inspection = inspect_motion(path, by_hand)
+def _inspect(
+    path: Path, by_hand: dict[str, str] | None, forget: bool, reading: dict[str, Any]
+) -> Inspection:
+    inspection = inspect_motion(path, by_hand, reading)
     if forget and inspection.motion and forget_mapping(inspection.motion.skeleton):
-        inspection = inspect_motion(path, by_hand)
+        inspection = inspect_motion(path, by_hand, reading)
     return inspection
 
 
@@ -114,7 +119,8 @@ def _notes(inspection: Inspection) -> str:
 
 def _show_one(inspection: Inspection) -> None:
     if inspection.mapping is None:
-        raise Fault(f"{inspection.path}: {inspection.refusal}")
+        where = f"{inspection.path}: "
+        raise Fault(where + (inspection.refusal or "").removeprefix(where))
     for standard, joint in inspection.mapping.joints.items():
         mean, worst = inspection.limb_errors_deg.get(standard, (None, None))
         error = "" if mean is None else f"  mean {mean:.2f}°, worst {worst:.1f}°"

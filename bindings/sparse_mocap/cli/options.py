@@ -24,18 +24,41 @@ __all__ = [
     "Setting",
     "Sites",
     "Span",
+    "Unit",
     "check_ending",
     "method_choice",
     "positions_along_bone_of",
+    "reading_options",
 ]
 
 PAPER_SITES = "left_wrist,right_wrist,left_ankle,right_ankle"
 
 FilePath = click.Path(path_type=Path)
 
-_MOTION_ENDINGS = (".bvh", ".amc", ".asf")
+_MOTION_ENDINGS = (".bvh", ".amc", ".asf", ".npz", ".mvnx")
+_UNITS_M = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "foot": 0.3048,
+            "cmu": 0.0254 / 0.45}  # fmt: skip
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+class Unit(click.ParamType):  # type: ignore[type-arg]
+    """A unit of length."""
+
+    name = "UNIT"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """Returns the metres of one unit."""
+        text = str(value).lower()
+        try:
+            return _UNITS_M[text] if text in _UNITS_M else float(text)
+        except ValueError:
+            self.fail(
+                f"{value!r} is no unit; choose from {', '.join(_UNITS_M)}, or write its metres",
+                param, ctx,
+            )  # fmt: skip
 
 
 class OutputPath(click.Path):
@@ -277,3 +300,39 @@ def check_ending(path: Path, *endings: str) -> str:
             f"'{path}' must end in {' or '.join(endings)}", param_hint="'--output'"
         )
     return ending
+
+
+def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """What motion files do not say: --rate, --unit, --up, --asf.
+
+    The command gets them as ``reading``, keyword arguments of read_motion and read_options.
+    """
+
+    @functools.wraps(command)
+    def with_reading(
+        *args: Any, rate: float, unit: float | None, up: str, asf: Path | None, **options: Any
+    ) -> Any:
+        reading = {"amc_rate_hz": rate, "unit_m": unit, "up": up, "asf": asf}
+        return command(*args, reading=reading, **options)
+
+    for option in (
+        click.option(
+            "--asf", type=FilePath,
+            help="The skeleton of .amc files, instead of the one beside each.",
+        ),
+        click.option(
+            "--up", type=click.Choice(("x", "y", "z")), default="y", show_default=True,
+            help="The axis that is up in the files.",
+        ),
+        click.option(
+            "--unit", type=Unit(),
+            help="The files' unit of length: " + ", ".join(_UNITS_M) + " (of CMU's files), or in"
+            " metres; by default what an .asf says, and cm for .bvh.",
+        ),
+        click.option(
+            "--rate", metavar="HZ", type=click.FloatRange(1.0, 10_000.0), default=120.0,
+            show_default=True, help="Frames per second of .amc files, which do not say it.",
+        ),
+    ):  # fmt: skip
+        with_reading = option(with_reading)
+    return with_reading

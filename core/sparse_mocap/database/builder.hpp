@@ -16,12 +16,13 @@ namespace sparse_mocap {
 // What people say of a motion file and its name does not; what is empty is not said.
 struct FileLabels {
   std::string actor, motion_class, origin, license;
+  double rate_hz = 0.0;  // in which it was recorded, whatever the file says; 0: not said
 };
 
 // How files get into a database.
 struct ImportOptions {
   std::vector<std::string> exclude;  // glob patterns (* ? [..]) on file names
-  bool is_strict = false;            // stop at the first file that cannot be used
+  bool is_strict = false;            // stop at the first file that cannot be used or is doubtful
   bool keep_duplicates = false;      // also take files whose motion is there already
   int num_threads = 0;               // 0: one a processor; the result is the same
   std::map<std::filesystem::path, FileLabels> labels;  // by the paths of find_source_files
@@ -57,6 +58,7 @@ struct BuildReport {
   double elapsed_s = 0.0;
   std::vector<SkippedFile> skipped;     // cannot be used
   std::vector<SkippedFile> duplicates;  // hold a motion that is there already
+  std::vector<SkippedFile> doubtful;    // taken in, but see why; the worst first
   std::vector<std::string> warnings;
 };
 

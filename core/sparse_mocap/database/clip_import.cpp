@@ -124,7 +124,7 @@ Outcome<SurveyedFile> survey_file(const SourceFile& file, const ReadOptions& opt
                                   const MappingChoice& choice, const std::stop_token& stop) {
   return outcome_of<SurveyedFile>(file, [&] {
     SurveyedFile surveyed;
-    surveyed.hashes = hashes_of(file.path);
+    surveyed.hashes = hashes_of(file.path, options);
     const MotionFile read = read_with_frames(file, options);
     stop_if_asked(stop);
     surveyed.bones = map_as_chosen(read.motion, choice).bones;
@@ -137,7 +137,7 @@ Outcome<SurveyedFile> survey_file(const SourceFile& file, const ReadOptions& opt
 Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& hashes,
                                   const Skeleton& standard, const CopyOptions& copies,
                                   const ReadOptions& options, const MappingChoice& choice,
-                                  const std::stop_token& stop) {
+                                  bool is_strict, const std::stop_token& stop) {
   return outcome_of<ImportedFile>(file, [&] {
     ImportedFile out;
     const MotionFile read = read_with_frames(file, options);
@@ -145,6 +145,9 @@ Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& ha
     const SkeletonMapping mapping = map_as_chosen(read.motion, choice);
     std::vector<std::string> texts = mapping.warnings;
     const Motion motion = to_standard(read.motion, mapping, standard, &texts);
+    out.faults = check_clip(read.motion, mapping, motion);
+    for (const ClipFault& fault : out.faults)
+      if (fault.is_refused || is_strict) throw FormatError({file.path}, fault.text);
     out.skeleton = described(read.motion.skeleton, mapping);
     out.bones = mapping.bones;
     Clip clip = clip_of(file, hashes, read.motion);
@@ -153,6 +156,7 @@ Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& ha
       out.warnings.push_back(warning.message());
       clip.warnings[kind_of_warning(warning.text)] += warning.count;
     }
+    for (const ClipFault& fault : out.faults) ++clip.warnings[kind_of_warning(fault.text)];
     for (const auto& text : texts) {
       out.warnings.push_back(file.path.filename().string() + ": " + text);
       ++clip.warnings[kind_of_warning(text)];

@@ -10,6 +10,7 @@
 
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/database/clip.hpp"
+#include "sparse_mocap/database/clip_check.hpp"
 #include "sparse_mocap/database/database_rows.hpp"
 #include "sparse_mocap/database/source_files.hpp"
 #include "sparse_mocap/formats/mapping_file.hpp"
@@ -39,6 +40,7 @@ struct ImportedFile {
   SourceSkeleton skeleton;
   StandardBones bones;                // the body's own, m
   std::vector<std::string> warnings;  // one line each
+  std::vector<ClipFault> faults;      // the worst first; none that is refused
 };
 
 // Which copies a database holds beside each motion, and at what rate.
@@ -49,13 +51,13 @@ struct CopyOptions {
   std::vector<double> tempos;
 };
 
-// Both throw Cancelled soon after stop is requested.
+// Both throw Cancelled soon after stop is requested. is_strict: any fault of a clip refuses it.
 Outcome<SurveyedFile> survey_file(const SourceFile& file, const ReadOptions& options,
                                   const MappingChoice& choice, const std::stop_token& stop);
 Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& hashes,
                                   const Skeleton& standard, const CopyOptions& copies,
                                   const ReadOptions& options, const MappingChoice& choice,
-                                  const std::stop_token& stop);
+                                  bool is_strict, const std::stop_token& stop);
 
 // A warning without what differs from file to file: numbers become '#', quoted names '...'.
 std::string kind_of_warning(const std::string& warning);

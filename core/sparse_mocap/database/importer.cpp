@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "sparse_mocap/base/ordered_work.hpp"
 #include "sparse_mocap/database/clip_names.hpp"
@@ -37,8 +38,12 @@ std::uint64_t sum_of_bytes(const std::vector<SourceFile>& files) {
 
 Importer::Importer(const std::vector<fs::path>& sources, const ImportOptions& options,
                    const Progress& progress)
-    : options_(options), progress_(progress), files_(find_source_files(sources, options.exclude)) {
+    : options_(options),
+      progress_(progress),
+      files_(find_source_files(sources, options.exclude, options.read)) {
   report_.warnings = options.label_warnings;
+  if (auto others = other_formats_in(sources, options.read); !others.empty())
+    report_.warnings.push_back(std::move(others));
 }
 
 // --- Labels --------------------------------------------------------------------------------------
@@ -54,6 +59,14 @@ void Importer::label(const SourceFile& file, Clip& clip) const {
   put(clip.motion_class, at->second.motion_class);
   put(clip.origin, at->second.origin);
   put(clip.license, at->second.license);
+}
+
+ReadOptions Importer::read_options(const SourceFile& file) const {
+  ReadOptions options = options_.read;
+  options.refuse_other_asf = true;
+  const auto at = options_.labels.find(file.path);
+  if (at != options_.labels.end() && at->second.rate_hz > 0.0) options.rate_hz = at->second.rate_hz;
+  return options;
 }
 
 // --- Progress and report -------------------------------------------------------------------------
@@ -106,7 +119,7 @@ std::vector<StandardBones> Importer::survey() {
   std::vector<StandardBones> bodies;
   begin_pass(files_.size(), sum_of_bytes(files_), 2);
   const auto work = [&](std::size_t i, const std::stop_token& stop) {
-    return survey_file(files_[i], options_.read, options_.mapping, stop);
+    return survey_file(files_[i], read_options(files_[i]), options_.mapping, stop);
   };
   const auto take = [&](std::size_t i, const Outcome<SurveyedFile>& outcome) {
     const auto* surveyed = std::get_if<SurveyedFile>(&outcome);
@@ -136,7 +149,7 @@ void Importer::recognise(DatabaseContent& content) {
   begin_pass(files_.size(), sum_of_bytes(files_), 2);
   const auto work = [&](std::size_t i, const std::stop_token&) -> Outcome<SourceHashes> {
     try {
-      return hashes_of(files_[i].path);
+      return hashes_of(files_[i].path, options_.read);
     } catch (const FormatError& error) {
       return error;
     }
@@ -203,7 +216,8 @@ void Importer::import(DatabaseContent& content, const CopyOptions& copies) {
   const auto work = [&](std::size_t i, const std::stop_token& stop) {
     const Pending& pending = pending_[i];
     return import_file(files_[pending.file], pending.hashes, content.skeleton, copies,
-                       options_.read, options_.mapping, stop);
+                       read_options(files_[pending.file]), options_.mapping, options_.is_strict,
+                       stop);
   };
   const auto take = [&](std::size_t i, Outcome<ImportedFile> outcome) {
     const SourceFile& file = files_[pending_[i].file];
@@ -216,6 +230,7 @@ void Importer::import(DatabaseContent& content, const CopyOptions& copies) {
   work_in_order(pending_.size(), options_.num_threads, work, take,
                 [&](std::size_t i) { show(files_[pending_[i].file]); });
   remove_replaced(content, num_old_clips);
+  sort_doubtful();
 }
 
 void Importer::take_in(const SourceFile& file, ImportedFile imported, DatabaseContent& content) {
@@ -234,6 +249,10 @@ void Importer::take_in(const SourceFile& file, ImportedFile imported, DatabaseCo
   report_.source_frames += static_cast<std::uint64_t>(imported.clips.front().source_frames);
   report_.warnings.insert(report_.warnings.end(), imported.warnings.begin(),
                           imported.warnings.end());
+  for (const ClipFault& fault : imported.faults) {
+    report_.doubtful.push_back({file.path, FormatError({file.path}, fault.text).what()});
+    severities_.push_back(fault.severity);
+  }
   auto& skeletons = content.sources.skeletons;
   if (std::none_of(skeletons.begin(), skeletons.end(),
                    [&](const auto& known) { return known.id == imported.skeleton.id; }))
@@ -244,6 +263,16 @@ void Importer::take_in(const SourceFile& file, ImportedFile imported, DatabaseCo
     content.clips.push_back(std::move(imported.clips[c]));
     content.clip_rows.push_back(std::move(imported.clip_rows[c]));
   }
+}
+
+void Importer::sort_doubtful() {
+  std::vector<std::size_t> order(severities_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return severities_[a] > severities_[b]; });
+  std::vector<SkippedFile> sorted;
+  for (const std::size_t i : order) sorted.push_back(report_.doubtful[i]);
+  report_.doubtful = std::move(sorted);
 }
 
 void Importer::remove_replaced(DatabaseContent& content, std::size_t num_old_clips) {

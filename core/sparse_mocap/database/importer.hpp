@@ -47,6 +47,7 @@ class Importer {
   };
 
   void label(const SourceFile& file, Clip& clip) const;
+  ReadOptions read_options(const SourceFile& file) const;
   void begin_pass(std::size_t num_files, std::uint64_t num_bytes, std::size_t num_passes_left);
   void show(const SourceFile& file) const;
   void count(const SourceFile& file, int num_frames);
@@ -56,6 +57,7 @@ class Importer {
   void know_clips(const DatabaseContent& content);
   void know_body(const std::string& actor, const StandardBones& bones);
   void take_in(const SourceFile& file, ImportedFile imported, DatabaseContent& content);
+  void sort_doubtful();
   void remove_replaced(DatabaseContent& content, std::size_t num_old_clips);
 
   const ImportOptions& options_;
@@ -68,6 +70,7 @@ class Importer {
   std::vector<std::string> known_sources_;  // by the ids of finder_
   std::set<std::string> old_actors_;        // of the clips that were there before
   std::vector<StandardBones> new_bodies_;
+  std::vector<double> severities_;  // of the report's doubtful files
   double num_source_seconds_ = 0.0;
   std::size_t done_before_ = 0;  // files of the passes before
   ProgressReport counts_;

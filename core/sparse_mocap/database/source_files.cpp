@@ -13,6 +13,7 @@
 #include "sparse_mocap/database/clip_names.hpp"
 #include "sparse_mocap/formats/acclaim.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
+#include "sparse_mocap/formats/other_formats.hpp"
 
 namespace sparse_mocap {
 namespace {
@@ -25,18 +26,27 @@ struct Found {
   fs::path folder;
 };
 
-std::vector<Found> found_in(const fs::path& source) {
+std::string known_endings(const ReadOptions& options) {
+  std::string endings = ".bvh, .amc";
+  for (const auto& [ending, reader] : options.further_readers) endings += ", " + ending;
+  return endings;
+}
+
+std::vector<Found> found_in(const fs::path& source, const ReadOptions& options) {
   if (!fs::exists(source)) throw FormatError({source}, "no such file or folder", "check the path");
   if (!fs::is_directory(source)) {
-    if (!is_motion_file(source))
-      throw FormatError({source}, "is neither .bvh nor .amc", "name motion files or folders");
+    if (const auto* other = other_format_by_ending(source))
+      throw FormatError({source}, other->what, other->remedy);
+    if (!is_motion_file(source, options))
+      throw FormatError({source}, "is no motion file (" + known_endings(options) + ")",
+                        "name motion files or folders");
     return {{source, source.parent_path()}};
   }
   std::vector<Found> found;
-  const auto options = fs::directory_options::skip_permission_denied;
-  for (const auto& entry : fs::recursive_directory_iterator(source, options)) {
+  constexpr auto kSkip = fs::directory_options::skip_permission_denied;
+  for (const auto& entry : fs::recursive_directory_iterator(source, kSkip)) {
     std::error_code unreadable;
-    if (entry.is_regular_file(unreadable) && is_motion_file(entry.path()))
+    if (entry.is_regular_file(unreadable) && is_motion_file(entry.path(), options))
       found.push_back({entry.path(), source});
   }
   return found;
@@ -83,15 +93,19 @@ void name_files(const std::vector<Found>& found, std::vector<SourceFile>& files)
 }  // namespace
 
 std::vector<SourceFile> find_source_files(const std::vector<fs::path>& sources,
-                                          const std::vector<std::string>& exclude) {
+                                          const std::vector<std::string>& exclude,
+                                          const ReadOptions& options) {
   std::vector<Found> found;
   for (const auto& source : sources) {
-    auto more = found_in(source);
+    auto more = found_in(source, options);
     found.insert(found.end(), more.begin(), more.end());
   }
-  if (found.empty())
+  if (found.empty()) {
+    const std::string others = other_formats_in(sources, options);
     throw FormatError({sources.empty() ? fs::path() : sources.front()},
-                      "holds no .bvh or .amc file", "name a folder of motion capture");
+                      "holds no motion file (" + known_endings(options) + ")",
+                      others.empty() ? "name a folder of motion capture" : others);
+  }
   std::erase_if(found, [&](const Found& f) { return is_excluded(f.path, exclude); });
   if (found.empty())
     throw FormatError({sources.front()}, "every motion file is excluded", "exclude fewer");
@@ -108,10 +122,35 @@ std::vector<SourceFile> find_source_files(const std::vector<fs::path>& sources,
 
 std::string hash_of_file(const fs::path& path) { return checksum(map_file(path)->view()); }
 
-SourceHashes hashes_of(const fs::path& path) {
+std::string other_formats_in(const std::vector<fs::path>& sources, const ReadOptions& options) {
+  std::map<std::string, int> counts;
+  std::map<std::string, std::string> remedies;  // by what to do: the endings
+  int total = 0;
+  for (const auto& source : sources) {
+    if (!fs::is_directory(source)) continue;
+    constexpr auto kSkip = fs::directory_options::skip_permission_denied;
+    for (const auto& entry : fs::recursive_directory_iterator(source, kSkip)) {
+      std::error_code unreadable;
+      const auto* other = other_format_by_ending(entry.path());
+      if (other == nullptr || !entry.is_regular_file(unreadable)) continue;
+      if (is_motion_file(entry.path(), options)) continue;
+      ++total;
+      if (++counts[std::string(other->mark)] > 1) continue;
+      std::string& endings = remedies[other->remedy];
+      endings += (endings.empty() ? "" : ", ") + std::string(other->mark);
+    }
+  }
+  if (total == 0) return "";
+  std::string line = std::to_string(total) + " files of other formats were not read:";
+  for (const auto& [ending, count] : counts) line += " " + std::to_string(count) + " " + ending;
+  for (const auto& [remedy, endings] : remedies) line += "; " + endings + ": " + remedy;
+  return line;
+}
+
+SourceHashes hashes_of(const fs::path& path, const ReadOptions& options) {
   SourceHashes hashes{hash_of_file(path), ""};
   if (equal_ignoring_case(path.extension().string(), ".amc"))
-    hashes.skeleton = hash_of_file(find_asf(path));
+    hashes.skeleton = hash_of_file(options.asf.empty() ? find_asf(path) : options.asf);
   return hashes;
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "sparse_mocap/formats/motion_file.hpp"
+
 namespace sparse_mocap {
 
 // A motion file among the sources of a database.
@@ -20,7 +22,13 @@ struct SourceFile {
 // relative name, the names begin with the folders' own.
 // Throws FormatError when a source does not exist or nothing is left.
 std::vector<SourceFile> find_source_files(const std::vector<std::filesystem::path>& sources,
-                                          const std::vector<std::string>& exclude);
+                                          const std::vector<std::string>& exclude,
+                                          const ReadOptions& options = {});
+
+// One line on the files of other formats in the folders, by kind and with what to do about them;
+// empty where there are none.
+std::string other_formats_in(const std::vector<std::filesystem::path>& sources,
+                             const ReadOptions& options);
 
 // XXH3 of a file, 16 hexadecimal digits. Throws FormatError when it cannot be read.
 std::string hash_of_file(const std::filesystem::path& path);
@@ -33,6 +41,6 @@ struct SourceHashes {
 
   auto operator<=>(const SourceHashes&) const = default;
 };
-SourceHashes hashes_of(const std::filesystem::path& path);
+SourceHashes hashes_of(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace sparse_mocap

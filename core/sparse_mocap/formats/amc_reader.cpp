@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "sparse_mocap/base/files.hpp"
 #include "sparse_mocap/formats/acclaim.hpp"
 #include "sparse_mocap/formats/asf_sections.hpp"
 
@@ -265,7 +264,7 @@ void AmcReader::check_complete(std::string_view frame_token) const {
 MotionFile read_amc(const std::filesystem::path& amc_path, const AcclaimSkeleton& skeleton,
                     const ReadOptions& options) {
   options.validate();
-  return amc_from_text(read_file(amc_path, options.max_bytes), amc_path, skeleton, options);
+  return amc_from_text(read_motion_text(amc_path, options), amc_path, skeleton, options);
 }
 
 MotionFile amc_from_text(std::string text, const std::filesystem::path& amc_path,

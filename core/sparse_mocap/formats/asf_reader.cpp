@@ -3,7 +3,6 @@
 #include <map>
 #include <utility>
 
-#include "sparse_mocap/base/files.hpp"
 #include "sparse_mocap/formats/asf_sections.hpp"
 
 namespace sparse_mocap {
@@ -150,7 +149,7 @@ void build_skeleton(const TextScanner& scanner, const AsfSections& sections,
 
 AcclaimSkeleton read_asf(const std::filesystem::path& path, const ReadOptions& options) {
   options.validate();
-  return asf_from_text(read_file(path, options.max_bytes), path, options);
+  return asf_from_text(read_motion_text(path, options), path, options);
 }
 
 AcclaimSkeleton asf_from_text(std::string text, const std::filesystem::path& path,
@@ -167,7 +166,7 @@ AcclaimSkeleton asf_from_text(std::string text, const std::filesystem::path& pat
     scanner.fail(sections.root.position_key, "the position of the root is out of range",
                  "check the number and the unit of the file");
   build_skeleton(scanner, sections, options, result);
-  warn_about_size(rest_pose(result.skeleton), result.metres_per_unit, {path}, result.warnings);
+  warn_about_size(rest_pose(result.skeleton), {path}, result.warnings);
   return result;
 }
 
@@ -185,7 +184,7 @@ std::filesystem::path find_asf(const std::filesystem::path& amc_path) {
   for (std::string stem = lower_case(amc_path.stem().string()); !stem.empty();) {
     if (const auto found = asf_by_stem.find(stem); found != asf_by_stem.end()) return found->second;
     wanted += (wanted.empty() ? "" : ", ") + stem + ".asf";
-    const auto cut = stem.rfind('_');
+    const auto cut = stem.find_last_of("_-. ");
     stem.resize(cut == std::string::npos ? 0 : cut);
   }
   if (asf_by_stem.size() == 1) return asf_by_stem.begin()->second;

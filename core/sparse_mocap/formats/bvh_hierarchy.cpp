@@ -84,6 +84,7 @@ class HierarchyReader {
 };
 
 BvhHierarchy HierarchyReader::read() {
+  while (scanner_.peek().starts_with('#')) scanner_.rest_of_line();  // some exporters' remarks
   const auto first = scanner_.next();
   if (first.empty()) scanner_.fail(first, "the file is empty", kExportAgain);
   if (!is_word(first, "HIERARCHY"))
@@ -136,12 +137,12 @@ void HierarchyReader::read_joint_item(std::string_view token) {
   if (is_word(token, "OFFSET")) {
     if (current.offset)
       scanner_.fail(token, "a second OFFSET of joint " + in_quotes(current.name), kRemoveOne);
-    current.offset = lengths_m(scanner_, "3 numbers after OFFSET", options_.bvh_unit_m);
+    current.offset = lengths_m(scanner_, "3 numbers after OFFSET", bvh_unit_m(options_));
   } else if (is_word(token, "CHANNELS")) {
     read_channels(token);
   } else if (is_word(token, "JOINT")) {
     open_joint(token);
-  } else if (is_word(token, "End")) {
+  } else if (is_word(token, "End") || is_word(token, "EndSite")) {
     open_end_site();
   } else {
     scanner_.fail(token,
@@ -156,7 +157,7 @@ void HierarchyReader::read_end_site_item(std::string_view token) {
   if (is_word(token, "OFFSET")) {
     if (block.has_offset) scanner_.fail(token, "a second OFFSET of an End Site", kRemoveOne);
     block.has_offset = true;
-    const Vec3 offset = lengths_m(scanner_, "3 numbers after OFFSET", options_.bvh_unit_m);
+    const Vec3 offset = lengths_m(scanner_, "3 numbers after OFFSET", bvh_unit_m(options_));
     auto& end_site = joint(block.joint).end_site;
     if (!end_site) end_site = offset;
   } else if (is_word(token, "CHANNELS")) {
@@ -269,7 +270,7 @@ void HierarchyReader::read_channels(std::string_view keyword) {
   std::string_view token = scanner_.peek();
   const auto is_next_item = [&] {
     return token.empty() || token == "}" || is_word(token, "JOINT") || is_word(token, "End") ||
-           is_word(token, "OFFSET") || is_word(token, "MOTION");
+           is_word(token, "EndSite") || is_word(token, "OFFSET") || is_word(token, "MOTION");
   };
   while (find_channel(token) != nullptr ||
          (static_cast<int>(channels.size()) < declared && !is_next_item())) {

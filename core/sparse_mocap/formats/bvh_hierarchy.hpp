@@ -31,6 +31,9 @@ struct BvhHierarchy {
   int first_tree_end = 0;
 };
 
+// BVH files do not state their unit; the convention is cm.
+inline double bvh_unit_m(const ReadOptions& options) { return options.unit_m.value_or(0.01); }
+
 // Reads up to and with the word MOTION. Throws FormatError.
 BvhHierarchy read_bvh_hierarchy(TextScanner& scanner, const ReadOptions& options,
                                 std::vector<ReadWarning>& warnings);

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "sparse_mocap/base/files.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
 #include "sparse_mocap/formats/bvh_hierarchy.hpp"
 
@@ -71,7 +70,11 @@ class MotionReader {
  public:
   MotionReader(TextScanner& scanner, const BvhHierarchy& hierarchy, const ReadOptions& options,
                MotionFile& file)
-      : scanner_(scanner), options_(options), motion_(file.motion), warnings_(file.warnings) {
+      : scanner_(scanner),
+        options_(options),
+        unit_m_(bvh_unit_m(options)),
+        motion_(file.motion),
+        warnings_(file.warnings) {
     std::size_t column = 0;
     for (int j = 0; j < static_cast<int>(hierarchy.joints.size()); ++j) {
       if (j < hierarchy.first_tree_end) columns_.emplace_back();
@@ -93,10 +96,7 @@ class MotionReader {
       throw FormatError(header_.location, "no joint has a channel",
                         "export the joints with their channels");
     reserve();
-    while (!row_.empty() && !scanner_.at_end()) {
-      read_row();
-      append_frame();
-    }
+    while (!row_.empty() && !scanner_.at_end() && read_row()) append_frame();
     check_frame_count();
   }
 
@@ -105,7 +105,8 @@ class MotionReader {
   double read_field(std::string_view first_word, std::string_view second_word,
                     std::string_view what);
   void reserve();
-  void read_row();
+  double frame_time_s(const Header& header, double value, std::string_view token);
+  bool read_row();
   void append_frame();
   Vec3 position(std::size_t joint) const;
   void append_offset(std::size_t joint, const Vec3& offset);
@@ -113,6 +114,7 @@ class MotionReader {
 
   TextScanner& scanner_;
   const ReadOptions& options_;
+  double unit_m_;
   Motion& motion_;
   std::vector<ReadWarning>& warnings_;
   std::vector<JointColumns> columns_;
@@ -154,11 +156,28 @@ Header MotionReader::read_header() {
   header.declared_frames = static_cast<int>(frames);
   scanner_.at_end();
   const auto time_token = scanner_.peek();
-  header.frame_time_s = read_field("Frame", "Time", "'Frame Time:' and a number");
-  if (header.frame_time_s < kShortestFrame_s || header.frame_time_s > kLongestFrame_s)
-    scanner_.fail(time_token, "the frame time must be from 0.0001 to 1 s",
-                  "write the seconds between two frames");
+  const double time = read_field("Frame", "Time", "'Frame Time:' and a number");
+  header.frame_time_s = frame_time_s(header, time, time_token);
   return header;
+}
+
+// Files of poses, which have few frames, need none and exporters write 0.
+double MotionReader::frame_time_s(const Header& header, double value, std::string_view token) {
+  constexpr double kOfPoses_s = 1.0 / 30.0;
+  constexpr int kMostPoses = 10;
+  if (value >= kShortestFrame_s && value <= kLongestFrame_s) return value;
+  if (value == 0.0 && header.declared_frames <= kMostPoses) {
+    add_warning(warnings_, scanner_.location(token),
+                "the frame time of these poses is 0; 1/30 s is used");
+    return kOfPoses_s;
+  }
+  const auto seconds = [](double s) { return short_number(s) + " s"; };
+  std::string remedy = "write the seconds between two frames";
+  if (value > kLongestFrame_s && value <= 1.0 / kShortestFrame_s)
+    remedy += ": " + short_number(value) + " frames per second are " + seconds(1.0 / value) + ", " +
+              short_number(value) + " ms are " + seconds(0.001 * value);
+  scanner_.fail(token, "the frame time is " + seconds(value) + ", it must be from 0.0001 to 1 s",
+                remedy);
 }
 
 // Reserves no more frames than the remaining bytes can hold, whatever count is declared.
@@ -169,13 +188,14 @@ void MotionReader::reserve() {
   motion_.rotations.reserve(frames * columns_.size());
 }
 
-// A row is usually a line; it may be wrapped, but a line never holds parts of two rows.
-void MotionReader::read_row() {
+// A row is usually a line; it may be wrapped, but a line never holds parts of two rows. False at
+// the end of a file that holds all declared frames and a part of one more.
+bool MotionReader::read_row() {
   std::size_t count = scanner_.numbers_on_line(row_.data(), row_.size());
   const auto row_name = [&] { return "row of frame " + std::to_string(motion_.num_frames() + 1); };
   const auto expected = [&] { return ", expected " + std::to_string(row_.size()); };
   if (count == row_.size()) {
-    if (scanner_.at_line_end()) return;
+    if (scanner_.at_line_end()) return true;
     scanner_.fail(scanner_.peek(), "the " + row_name() + " has more values" + expected(),
                   kCompareChannels);
   }
@@ -183,10 +203,15 @@ void MotionReader::read_row() {
     const auto line_end = scanner_.here();
     const std::string problem =
         "the " + row_name() + " has " + std::to_string(count) + " values" + expected();
+    if (scanner_.at_end() && motion_.num_frames() >= std::max(1, header_.declared_frames)) {
+      add_warning(warnings_, scanner_.location(line_end), problem + "; it is left out");
+      return false;
+    }
     if (scanner_.at_end()) scanner_.fail(line_end, problem, "the file may be cut off");
     count += scanner_.numbers_on_line(row_.data() + count, row_.size() - count);
     if (!scanner_.at_line_end()) scanner_.fail(line_end, problem, kCompareChannels);
   }
+  return true;
 }
 
 void MotionReader::append_frame() {
@@ -208,7 +233,7 @@ void MotionReader::append_frame() {
 Vec3 MotionReader::position(std::size_t joint) const {
   Vec3 result = motion_.skeleton.joints()[joint].offset_parent;
   for (const auto& [index, axis] : columns_[joint].positions)
-    result[static_cast<Eigen::Index>(axis)] = row_[index] * options_.bvh_unit_m;
+    result[static_cast<Eigen::Index>(axis)] = row_[index] * unit_m_;
   if (result.cwiseAbs().maxCoeff() > kMaxLength_m)
     scanner_.fail(scanner_.here(),
                   "a position in the row of frame " + std::to_string(motion_.num_frames() + 1) +
@@ -241,33 +266,11 @@ void MotionReader::check_frame_count() {
                     " frames and has " + std::to_string(rows) + "; all that exist are read");
 }
 
-// The rotation from the given up axis to y up.
-Quat rotation_to_y(Axis up) {
-  if (up == Axis::y) return Quat::Identity();
-  return Quat(Eigen::AngleAxisd(up == Axis::z ? -0.5 * kPi : 0.5 * kPi,
-                                up == Axis::z ? Vec3::UnitX() : Vec3::UnitZ()));
-}
-
-// The same movement in other world axes: rotates every frame of the skeleton.
-void change_basis(Motion& motion, const Quat& C) {
-  auto joints = motion.skeleton.joints();
-  for (auto& joint : joints) {
-    joint.offset_parent = C * joint.offset_parent;
-    joint.bone = C * joint.bone;
-    joint.R_joint_axes = C * joint.R_joint_axes;
-  }
-  motion.skeleton = Skeleton(std::move(joints));
-  for (auto& position : motion.root_positions) position = C * position;
-  for (auto& rotation : motion.rotations) rotation = C * rotation * C.conjugate();
-  for (auto& track : motion.offset_tracks)
-    for (auto& offset : track.offset_parent) offset = C * offset;
-}
-
 }  // namespace
 
 MotionFile read_bvh(const std::filesystem::path& path, const ReadOptions& options) {
   options.validate();
-  return bvh_from_text(read_file(path, options.max_bytes), path, options);
+  return bvh_from_text(read_motion_text(path, options), path, options);
 }
 
 MotionFile bvh_from_text(std::string text, const std::filesystem::path& path,
@@ -282,8 +285,8 @@ MotionFile bvh_from_text(std::string text, const std::filesystem::path& path,
   // Many exporters have an odd rest pose, but the first frame shows a figure.
   const auto& motion = file.motion;
   warn_about_size(motion.num_frames() > 0 ? motion.transforms(0) : rest_pose(motion.skeleton),
-                  options.bvh_unit_m, hierarchy.joints[0].location, file.warnings);
-  if (options.bvh_up != Axis::y) change_basis(file.motion, rotation_to_y(options.bvh_up));
+                  hierarchy.joints[0].location, file.warnings);
+  if (options.up != Axis::y) change_world(file.motion, 1.0, rotation_to_y(options.up));
   return file;
 }
 

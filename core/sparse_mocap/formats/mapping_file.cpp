@@ -55,9 +55,8 @@ JointNames read_mapping(const std::filesystem::path& path) {
     throw FormatError({path}, "'joints' must be an object from standard joints to the file's",
                       R"(as in {"lfemur": "LeftUpLeg"})");
   }
-  const auto& names = standard_joint_names();
   for (const auto& [standard, name] : joints)
-    if (std::find(names.begin(), names.end(), standard) == names.end())
+    if (!is_mapped_name(standard))
       throw FormatError({path}, "'" + standard + "' is not a standard joint",
                         "the nearest is '" + nearest_standard_joint(standard) + "'");
   return joints;

@@ -8,6 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "sparse_mocap/base/files.hpp"
+#include "sparse_mocap/formats/other_formats.hpp"
+
 namespace sparse_mocap {
 namespace {
 
@@ -29,12 +32,6 @@ std::size_t utf8_length(std::string_view text) {
   const bool is_surrogate = byte(0) == 0xED && byte(1) > 0x9F;
   const bool is_beyond_unicode = byte(0) == 0xF4 && byte(1) > 0x8F;
   return is_overlong || is_surrogate || is_beyond_unicode ? 0 : length;
-}
-
-std::string short_number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
 }
 
 // The longest side of the box around the figure: height or span of the arms.
@@ -72,6 +69,12 @@ Quat turned_about(const Quat& q, Axis axis, double angle_rad) {
   to[j] = c * from[j] + s * from[k];
   to[k] = c * from[k] - s * from[j];
   return result;
+}
+
+std::string short_number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
 }
 
 std::string escaped_to_utf8(std::string_view text) {
@@ -151,33 +154,49 @@ std::vector<std::string> unique_names(std::vector<std::string> names, NameCase n
   return names;
 }
 
-void warn_about_size(const JointTransforms& pose, double unit_m, const FileLocation& location,
+void warn_about_size(const JointTransforms& pose, const FileLocation& location,
                      std::vector<ReadWarning>& warnings) {
   constexpr double kSmallest_m = 0.5;
   constexpr double kTallest_m = 3.0;
-  constexpr double kUsual_m = 1.7;
-  struct Unit {
-    double metres;
-    const char* name;
-  };
-  constexpr std::array<Unit, 6> kUnits{{{0.001, "mm"},
-                                        {0.01, "cm"},
-                                        {0.0254, "inches"},
-                                        {0.0254 / 0.45, "inches / 0.45"},
-                                        {0.1, "dm"},
-                                        {1.0, "m"}}};
   const double size = size_m(pose);
   if (size == 0.0 || (size >= kSmallest_m && size <= kTallest_m)) return;
-  const auto size_in = [&](const Unit& unit) { return size / unit_m * unit.metres; };
-  const auto misfit = [&](const Unit& unit) {
-    return std::abs(std::log(size_in(unit) / kUsual_m));
-  };
-  const auto& best = *std::ranges::min_element(kUnits, {}, misfit);
-  if (std::abs(best.metres / unit_m - 1.0) < 0.01) return;
   add_warning(warnings, location,
-              "the figure measures " + short_number(size) + " m; with lengths in " + best.name +
-                  " (" + short_number(best.metres) + " m a unit) it would be " +
-                  short_number(size_in(best)) + " m");
+              "the figure measures " + short_number(size) +
+                  " m; if that is not its size, choose the file's unit");
+}
+
+Quat rotation_to_y(Axis up) {
+  if (up == Axis::y) return Quat::Identity();
+  return Quat(Eigen::AngleAxisd(up == Axis::z ? -0.5 * kPi : 0.5 * kPi,
+                                up == Axis::z ? Vec3::UnitX() : Vec3::UnitZ()));
+}
+
+void change_world(Motion& motion, double factor, const Quat& R_new_old) {
+  const auto changed = [&](const Vec3& v) -> Vec3 { return factor * (R_new_old * v); };
+  auto joints = motion.skeleton.joints();
+  for (auto& joint : joints) {
+    joint.offset_parent = changed(joint.offset_parent);
+    joint.bone = changed(joint.bone);
+    joint.R_joint_axes = R_new_old * joint.R_joint_axes;
+  }
+  motion.skeleton = Skeleton(std::move(joints));
+  for (auto& position : motion.root_positions) position = changed(position);
+  for (auto& rotation : motion.rotations) rotation = R_new_old * rotation * R_new_old.conjugate();
+  for (auto& track : motion.offset_tracks)
+    for (auto& offset : track.offset_parent) offset = changed(offset);
+}
+
+std::string read_motion_text(const std::filesystem::path& path, const ReadOptions& options) {
+  std::string text = read_file(path, options.max_bytes);
+  if (const auto* other = other_format_by_content(text))
+    throw FormatError({path}, other->what, other->remedy);
+  // Of a file of zero bytes alone, or of UTF-16, some stay for the scanner to refuse.
+  const std::size_t end = text.find_last_not_of(std::string_view("\0\x1a \t\r\n", 6));
+  const std::string_view tail =
+      std::string_view(text).substr(end == std::string::npos ? text.size() : end + 1);
+  if (tail.find_first_of(std::string_view("\0\x1a", 2)) != std::string_view::npos)
+    text.resize(end + 1);
+  return text;
 }
 
 int max_frames_of(int num_joints, const ReadOptions& options) {

@@ -27,6 +27,9 @@ void add_warning(std::vector<ReadWarning>& warnings, const FileLocation& locatio
 double length_m(TextScanner& scanner, std::string_view what, double unit_m);
 Vec3 lengths_m(TextScanner& scanner, std::string_view what, double unit_m);
 
+// A number with three digits, for messages.
+std::string short_number(double value);
+
 // The name with bytes that are not UTF-8 written as \x and two digits.
 std::string escaped_to_utf8(std::string_view name);
 
@@ -41,9 +44,20 @@ enum class NameCase { counts, ignored };
 std::vector<std::string> unique_names(std::vector<std::string> names,
                                       NameCase name_case = NameCase::counts);
 
-// Warns when a figure in this pose is far from human size, with the unit that would fit.
-void warn_about_size(const JointTransforms& pose, double unit_m, const FileLocation& location,
+// Warns when a figure in this pose is far from human size.
+void warn_about_size(const JointTransforms& pose, const FileLocation& location,
                      std::vector<ReadWarning>& warnings);
+
+// The rotation from the given up axis to y up.
+Quat rotation_to_y(Axis up);
+
+// The same movement with lengths and world axes changed: every frame of the skeleton turns along.
+void change_world(Motion& motion, double factor, const Quat& R_new_old);
+
+// The whole text of a motion file, without the 0x1A and zero bytes that some programs put at the
+// end. Throws FormatError, also for files of other formats that bear this one's name: it says which
+// and what to do.
+std::string read_motion_text(const std::filesystem::path& path, const ReadOptions& options);
 
 // The largest number of frames that the options allow for num_joints joints.
 int max_frames_of(int num_joints, const ReadOptions& options);

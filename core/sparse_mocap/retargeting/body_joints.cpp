@@ -36,6 +36,26 @@ bool is_below(const Skeleton& rig, int joint, int ancestor) {
   return joint == ancestor;
 }
 
+bool is_named(const std::string& name, BodyPart part, Side side) {
+  const auto parts = parts_named(name);
+  return std::any_of(parts.begin(), parts.end(), [&](const NamedPart& named) {
+    return named.part == part && named.side == side;
+  });
+}
+
+// Rigs that have an ankle and a foot (SMPL, Kinect) call both by names of the foot: the shank ends
+// at the upper one.
+void raise_to_ankle(const Skeleton& rig, Side side, PartJoints& parts) {
+  int& foot = joint_of(parts, BodyPart::foot, side);
+  const int shank = joint_of(parts, BodyPart::shank, side);
+  if (foot < 0 || shank < 0) return;
+  for (const int joint : path_down(rig, shank, foot)) {
+    if (!is_named(rig.joint(joint).name, BodyPart::foot, side)) continue;
+    foot = joint;
+    return;
+  }
+}
+
 // The best named joint of each part; where a limb's upper part is known, its next part is one that
 // hangs below ("LeftLeg" is a thigh's shank, never the thigh itself).
 void find_parts_by_name(const Skeleton& rig, PartJoints& parts) {
@@ -59,17 +79,17 @@ void find_parts_by_name(const Skeleton& rig, PartJoints& parts) {
       }
     }
   }
+  for (const Side side : kSides) raise_to_ankle(rig, side, parts);
 }
 
-std::array<int, kNumStandardJoints> joints_by_hand(const Skeleton& rig, const JointNames& by_hand) {
-  std::array<int, kNumStandardJoints> found;
-  found.fill(-1);
+BodyJoints joints_by_hand(const Skeleton& rig, const JointNames& by_hand) {
+  BodyJoints found;
+  found.standard.fill(-1);
   std::vector<std::string_view> rig_names;
   for (const auto& joint : rig.joints()) rig_names.push_back(joint.name);
   const auto& names = standard_joint_names();
   for (const auto& [standard, name] : by_hand) {
-    const auto at = std::find(names.begin(), names.end(), standard);
-    if (at == names.end())
+    if (!is_mapped_name(standard))
       throw MappingError("mapping by hand: '" + standard +
                          "' is not a standard joint, the nearest is '" +
                          nearest_standard_joint(standard) + "'");
@@ -77,7 +97,9 @@ std::array<int, kNumStandardJoints> joints_by_hand(const Skeleton& rig, const Jo
     if (joint < 0)
       throw MappingError("mapping by hand: the skeleton has no joint '" + name +
                          "', the nearest is '" + std::string(nearest_name(name, rig_names)) + "'");
-    found[static_cast<std::size_t>(at - names.begin())] = joint;
+    const auto at = std::find(names.begin(), names.end(), standard);
+    (at == names.end() ? found.ankle[standard == kAnkleNames[0] ? 0 : 1]
+                       : found.standard[static_cast<std::size_t>(at - names.begin())]) = joint;
   }
   return found;
 }
@@ -132,8 +154,12 @@ void find_trunk(const Skeleton& rig, PartJoints& parts, BodyJoints& found) {
 
 }  // namespace
 
+bool is_mapped_name(const std::string& name) { return nearest_standard_joint(name) == name; }
+
 std::string nearest_standard_joint(const std::string& name) {
-  return std::string(nearest_name(name, standard_joint_names()));
+  std::vector<std::string_view> known(kAnkleNames.begin(), kAnkleNames.end());
+  known.insert(known.begin(), standard_joint_names().begin(), standard_joint_names().end());
+  return std::string(nearest_name(name, known));
 }
 
 std::vector<int> path_down(const Skeleton& rig, int ancestor, int joint) {
@@ -151,14 +177,16 @@ int common_ancestor(const Skeleton& rig, int a, int b) {
 
 BodyJoints find_body_joints(const Skeleton& rig, const JointTransforms& pose,
                             const JointNames& by_hand) {
-  BodyJoints found;
-  found.standard = joints_by_hand(rig, by_hand);
+  BodyJoints found = joints_by_hand(rig, by_hand);
   PartJoints parts = no_parts();
   find_parts_by_name(rig, parts);
   for (const auto& limb : kLimbs)
     for (const Side side : kSides)
       if (const int given = found.standard[limb.joint[static_cast<std::size_t>(side)]]; given >= 0)
         joint_of(parts, limb.part, side) = given;
+  for (const Side side : kSides)
+    if (const int given = found.ankle[static_cast<std::size_t>(side)]; given >= 0)
+      joint_of(parts, BodyPart::foot, side) = given;
   if (const int given = found.standard[head]; given >= 0)
     joint_of(parts, BodyPart::head, Side::middle) = given;
   const PartJoints named = parts;

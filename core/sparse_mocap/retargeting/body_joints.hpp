@@ -11,8 +11,10 @@
 
 namespace sparse_mocap {
 
-// The names of a rig's joints by standard joint, as people write them by hand.
+// The names of a rig's joints by standard joint, as people write them by hand. lfoot and rfoot,
+// whose joints the standard skeleton lacks, are the ankles, where the shanks end.
 using JointNames = std::map<std::string, std::string>;
+inline constexpr std::array<const char*, 2> kAnkleNames{"lfoot", "rfoot"};
 
 // A rig's joints of a human body; -1: there is none.
 struct BodyJoints {
@@ -29,7 +31,8 @@ struct BodyJoints {
 BodyJoints find_body_joints(const Skeleton& rig, const JointTransforms& pose,
                             const JointNames& by_hand);
 
-// The standard joint whose name is spelt most like this one.
+// Whether a mapping may name it, and the name that is spelt most like it.
+bool is_mapped_name(const std::string& name);
 std::string nearest_standard_joint(const std::string& name);
 
 // Joints from below `ancestor` down to `joint` inclusive; empty when it is no ancestor.

@@ -75,15 +75,23 @@ class BoneFinder {
       set(wrist, pivot(wrist), last_end(joints_.standard[wrist]));
   }
 
-  // A body without a neck joint: the height of the shoulders on the way from chest to head.
+  // Where a body has no neck joint, or one below the shoulders: the height of the shoulders on the
+  // way from chest to head.
   Vec3 neck_base() const {
-    if (has(lowerneck)) return pivot(lowerneck);
-    Vec3 shoulders = 0.5 * (pivot(lhumerus) + pivot(rhumerus));
+    const Vec3 shoulders = 0.5 * (pivot(lhumerus) + pivot(rhumerus));
+    if (has(lowerneck) && !is_below(pivot(lowerneck), shoulders)) return pivot(lowerneck);
     if (!has(head)) return shoulders;
     const Vec3 below = has(thorax) ? pivot(thorax) : pivot(root);
     const Vec3 way = pivot(head) - below;
     if (way.squaredNorm() <= 0.0) return shoulders;
     return below + way * std::clamp(way.dot(shoulders - below) / way.squaredNorm(), 0.3, 0.9);
+  }
+
+  // Far enough below the shoulders, by the trunk's length, to be a joint of the spine.
+  bool is_below(const Vec3& neck, const Vec3& shoulders) const {
+    constexpr double kBelow = 0.2;
+    const Vec3 up = shoulders - pivot(root);
+    return (shoulders - neck).dot(up) > kBelow * up.squaredNorm();
   }
 
   Vec3 head_top() const {

@@ -22,7 +22,10 @@ struct LimbErrors {
 };
 
 // What to_standard made of a source, frame by frame. The source's limbs point from joint to joint
-// (shoulder, elbow, wrist; hip, knee, ankle), whatever its joints turn.
-LimbErrors limb_errors(const Motion& source, const SkeletonMapping& mapping, const Motion& mapped);
+// (shoulder, elbow, wrist; hip, knee, ankle: the first that is most of the way down, whichever the
+// mapping ends at), whatever its joints turn.
+// step: every how many frames are compared.
+LimbErrors limb_errors(const Motion& source, const SkeletonMapping& mapping, const Motion& mapped,
+                       int step = 1);
 
 }  // namespace sparse_mocap

@@ -115,6 +115,9 @@ JointNames mapped_joint_names(const Skeleton& rig, const SkeletonMapping& mappin
   for (std::size_t j = 0; j < mapping.joints.standard.size(); ++j)
     if (const int joint = mapping.joints.standard[j]; joint >= 0)
       names.emplace(standard_joint_names()[j], rig.joint(joint).name);
+  for (std::size_t side = 0; side < kAnkleNames.size(); ++side)
+    if (const int ankle = mapping.joints.ankle[side]; ankle >= 0)
+      names.emplace(kAnkleNames[side], rig.joint(ankle).name);
   return names;
 }
 

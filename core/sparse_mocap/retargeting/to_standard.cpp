@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/retargeting/to_standard.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -25,18 +26,30 @@ class Limb {
       : upper_bone_(upper.bone.normalized()),
         lower_bone_(lower.bone.normalized()),
         hinge_(lower.R_joint_axes * unit(lower.axes.front())),
-        flexion_(hinge_.cross(upper_bone_).normalized()) {}
+        across_((hinge_ - upper_bone_ * upper_bone_.dot(hinge_)).normalized()),
+        flexion_(across_.cross(upper_bone_)) {}
 
   // R_world_upper with the twist that lets the hinge reach `lower` (a direction in the world).
-  // A nearly straight limb has no clear plane, so there the twist fades out.
-  Mat3 twisted(const Mat3& R_world_upper, const Vec3& lower) const {
-    const double kClearPlane = std::sin(5.0 * kRadiansPerDegree);
+  // Two twists do, half a turn apart: that in which the limb bends forward, unless the frame before
+  // was near the other. A nearly straight limb has no clear plane, so there the twist fades out.
+  Mat3 twisted(const Mat3& R_world_upper, const Vec3& lower) {
+    constexpr double kForward_rad = 20.0 * kRadiansPerDegree;  // how much nearer that one counts
+    const double kClearPlane = std::pow(std::sin(5.0 * kRadiansPerDegree), 4);
     const Vec3 l = R_world_upper.transpose() * lower;
-    const double forward = l.dot(flexion_);
-    const double sideways = (l - lower_bone_).dot(hinge_);
-    const double twist =
-        std::atan(sideways * forward / (forward * forward + kClearPlane * kClearPlane));
-    return R_world_upper * Eigen::AngleAxisd(twist, upper_bone_);
+    // After a twist t the part of `lower` across the hinge's plane is across cos t - flexion sin t;
+    // a hinge holds what that is in its rest.
+    const double across = l.dot(across_), flexion = l.dot(flexion_);
+    const double held = (lower_bone_.dot(hinge_) - l.dot(upper_bone_) * upper_bone_.dot(hinge_)) /
+                        across_.dot(hinge_);
+    const double bend = std::hypot(across, flexion);
+    const double clear = std::max(0.0, bend * bend - held * held);
+    const double middle = -std::atan2(flexion, across);
+    const double half = std::atan2(std::sqrt(clear), held);
+    const bool is_forward =
+        std::abs(turn_to(middle + half)) - kForward_rad <= std::abs(turn_to(middle - half));
+    twist_ = std::remainder(is_forward ? middle + half : middle - half, 2.0 * kPi) * clear * clear /
+             (clear * clear + kClearPlane);
+    return R_world_upper * Eigen::AngleAxisd(twist_, upper_bone_);
   }
 
   // The lower bone's world rotation at the hinge's angle that brings it nearest to `lower`.
@@ -48,8 +61,13 @@ class Limb {
   }
 
  private:
+  // From the twist of the frame before to another, the short way round.
+  double turn_to(double twist) const { return std::remainder(twist - twist_, 2.0 * kPi); }
+
   Vec3 upper_bone_, lower_bone_;  // directions in rest
-  Vec3 hinge_, flexion_;          // the hinge's axis; where the lower bone goes when it bends
+  Vec3 hinge_;                    // its axis
+  Vec3 across_, flexion_;         // across the upper bone: along the hinge; where the limb bends to
+  double twist_ = 0.0;            // of the upper bone in this frame, rad
 };
 
 // Puts one frame after another on the standard skeleton.
@@ -89,7 +107,7 @@ class ToStandard {
   // The source's world rotation on the standard joint's axes; nothing where the joint follows its
   // parent.
   std::optional<Mat3> wanted_rotation(const JointTransforms& source, int j,
-                                      const Mat3& R_world_parent) const {
+                                      const Mat3& R_world_parent) {
     const auto& joints = joint_mapping_[at(j)];
     if (joints.empty()) return std::nullopt;
     const Mat3 wanted = mapped_rotation(joints, source.R_world_joint);

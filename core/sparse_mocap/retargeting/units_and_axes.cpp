@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
-#include "sparse_mocap/retargeting/mapping_error.hpp"
 #include "sparse_mocap/retargeting/rest_alignment.hpp"
 #include "sparse_mocap/retargeting/source_motion.hpp"
 
@@ -31,14 +31,64 @@ Vec3 upward(const BonePositions& bones) {
   return (bones.up.normalized() + (bones.end[thorax] - feet).normalized()).normalized();
 }
 
-Vec3 mean_upward(const Motion& source, const BodyJoints& joints) {
+// Frames throughout a motion, without a pose that exporters put before it.
+std::vector<int> some_frames(const Motion& source) {
   constexpr int kMostFrames = 100;
   const int step = std::max(1, source.num_frames() / kMostFrames);
+  std::vector<int> frames;
+  for (int t = num_leading_rest_frames(source); t < source.num_frames(); t += step)
+    frames.push_back(t);
+  return frames;
+}
+
+// How a motion's body lies along an axis (file's units), each frame's median.
+struct AlongAxis {
+  double lowest = 0.0;  // of all joints
+  double pelvis = 0.0;
+};
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+AlongAxis along_axis(const Motion& source, const BodyJoints& joints, const Vec3& axis) {
+  std::vector<double> lowest, pelvis;
+  for (const int t : some_frames(source)) {
+    const JointTransforms pose = source.transforms(t);
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& point : pose.pivot) least = std::min(least, point.dot(axis));
+    lowest.push_back(least);
+    pelvis.push_back(
+        pose.pivot[static_cast<std::size_t>(joints.standard[standard_joint::root])].dot(axis));
+  }
+  return {median(lowest), median(pelvis)};
+}
+
+// Whether a figure that is upright along another axis than y stands in a file whose root carries
+// the turn of the axes, rather than lies or hangs on its head: its feet are on that axis's floor,
+// and it does not lie on that of y.
+bool is_turned_by_root(const Motion& source, const BodyJoints& joints, const RestPose& rest,
+                       const Vec3& up) {
+  const BonePositions bones = bone_positions(source.skeleton, joints, rest.transforms);
+  const double leg =
+      bones.vector(standard_joint::lfemur).norm() + bones.vector(standard_joint::ltibia).norm();
+  const AlongAxis standing = along_axis(source, joints, up);
+  const AlongAxis lying = along_axis(source, joints, kUp);
+  const bool is_on_its_floor =
+      std::abs(standing.lowest) < 0.3 * leg && standing.pelvis - standing.lowest > 0.75 * leg;
+  const bool lies_on_the_ground =
+      std::abs(lying.lowest) < 0.15 * leg && lying.pelvis > 0.05 * leg && lying.pelvis < 0.6 * leg;
+  return is_on_its_floor && !lies_on_the_ground;
+}
+
+Vec3 mean_upward(const Motion& source, const BodyJoints& joints) {
+  const auto frames = some_frames(source);
   Vec3 sum = Vec3::Zero();
-  int count = 0;
-  for (int t = num_leading_rest_frames(source); t < source.num_frames(); t += step, ++count)
+  for (const int t : frames)
     sum += upward(bone_positions(source.skeleton, joints, source.transforms(t)));
-  return count > 0 ? Vec3(sum / count) : sum;
+  return frames.empty() ? sum : Vec3(sum / static_cast<double>(frames.size()));
 }
 
 }  // namespace
@@ -57,6 +107,7 @@ double guessed_unit_scale(double leg_m, std::vector<std::string>& warnings) {
                                      Unit{"inch", 2.54},
                                      Unit{"mm", 0.1},
                                      Unit{"dm", 10.0},
+                                     Unit{"feet", 30.48},
                                      Unit{"cm where inches are usual", 1.0 / 2.54}};
   for (const Unit& unit : kUnits) {
     for (const double scale : {unit.scale_from_cm, 0.01 * unit.scale_from_cm}) {
@@ -68,16 +119,19 @@ double guessed_unit_scale(double leg_m, std::vector<std::string>& warnings) {
       best_scale = scale;
     }
   }
-  if (best == nullptr)
-    throw MappingError("legs of " + std::to_string(leg_m) +
-                       " m are not a human body's in any usual unit");
+  if (best == nullptr) {
+    warnings.push_back("legs of " + std::to_string(leg_m) +
+                       " m are no person's in any usual unit: the figure is scaled to legs of " +
+                       std::to_string(kUsualLeg_m) + " m");
+    return kUsualLeg_m / leg_m;
+  }
   warnings.push_back("legs of " + std::to_string(leg_m) + " m: the file's unit is taken as " +
                      best->name);
   return best_scale;
 }
 
 // Lying down in a file with y up looks like standing in one with z up; the rest pose shows
-// which it is. Where that is no pose the movement decides.
+// which it is, or else where the floor is. Where the rest is no pose the movement decides.
 Mat3 guessed_world(const Motion& source, const BodyJoints& joints, const RestPose& rest,
                    std::vector<std::string>& warnings) {
   constexpr int kY = 2;
@@ -85,12 +139,19 @@ Mat3 guessed_world(const Motion& source, const BodyJoints& joints, const RestPos
   const int resting =
       rest.is_at_zero ? main_axis(upward(bone_positions(source.skeleton, joints, rest.transforms)))
                       : moving;
-  if (moving == kY || resting == kY || resting == 0) return Mat3::Identity();
-  if (moving != 0 && moving != resting) return Mat3::Identity();
-  const Vec3 up = Vec3::Unit(std::abs(resting) - 1) * (resting > 0 ? 1.0 : -1.0);
-  warnings.push_back(std::string("the body stands along ") + (resting > 0 ? "+" : "-") +
-                     "xyz"[std::abs(resting) - 1] + ", which is taken as up");
-  return smallest_rotation(up, kUp);
+  const auto direction = [](int axis) {
+    return Vec3(Vec3::Unit(std::abs(axis) - 1) * (axis > 0 ? 1.0 : -1.0));
+  };
+  int up = resting;
+  if (moving == kY || resting == 0) return Mat3::Identity();
+  if (moving != 0 && moving != resting) {
+    if (!is_turned_by_root(source, joints, rest, direction(moving))) return Mat3::Identity();
+    up = moving;
+  }
+  if (up == kY) return Mat3::Identity();
+  warnings.push_back(std::string("the body stands along ") + (up > 0 ? "+" : "-") +
+                     "xyz"[std::abs(up) - 1] + ", which is taken as up");
+  return smallest_rotation(direction(up), kUp);
 }
 
 }  // namespace sparse_mocap

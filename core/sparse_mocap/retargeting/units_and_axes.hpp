@@ -8,8 +8,8 @@
 
 namespace sparse_mocap {
 
-// The factor that gives legs (m) a human length, 1 when they have one already; what was guessed
-// goes to warnings. Throws MappingError when no usual unit does.
+// The factor that gives legs (m) a human length: 1 when they have one already, else that of a usual
+// unit, else what makes them usual legs. What was guessed goes to warnings.
 double guessed_unit_scale(double leg_m, std::vector<std::string>& warnings);
 
 // Turns the file's world into one with y up, as rest pose and movement show it; what was guessed

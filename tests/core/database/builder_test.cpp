@@ -169,12 +169,11 @@ TEST_F(BuildDatabase, ListsEachFileOnceAndSorted) {
 TEST_F(BuildDatabase, RefusesSourcesThatAreNoMotion) {
   EXPECT_REFUSED(FormatError, "no such file or folder",
                  find_source_files({folder_ / "nowhere"}, {}));
-  EXPECT_REFUSED(FormatError, "is neither .bvh nor .amc",
+  EXPECT_REFUSED(FormatError, "is no motion file",
                  find_source_files({folder_ / "in/notes.txt"}, {}));
-  EXPECT_REFUSED(FormatError, "holds no .bvh or .amc file", find_source_files({}, {}));
+  EXPECT_REFUSED(FormatError, "holds no motion file", find_source_files({}, {}));
   fs::create_directories(folder_ / "empty");
-  EXPECT_REFUSED(FormatError, "holds no .bvh or .amc file",
-                 find_source_files({folder_ / "empty"}, {}));
+  EXPECT_REFUSED(FormatError, "holds no motion file", find_source_files({folder_ / "empty"}, {}));
   BuildOptions options;
   for (const double rate : {0.0, -25.0, 1e6, std::nan("")}) {
     options.rate_hz = rate;

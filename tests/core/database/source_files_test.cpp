@@ -62,12 +62,12 @@ TEST_F(SourceFiles, KnowTheirSizeAndWhatTheyHold) {
   EXPECT_EQ(files[0].num_bytes, 9U);
   EXPECT_EQ(hash_of_file(files[0].path).size(), 16U);
   EXPECT_NE(hash_of_file(files[0].path), hash_of_file(folder_ / "b/walk.bvh"));
-  EXPECT_EQ(hashes_of(files[0].path).skeleton, "");
-  EXPECT_REFUSED(FormatError, "there is no .asf in", hashes_of(folder_ / "a/deep/x.amc"));
+  EXPECT_EQ(hashes_of(files[0].path, {}).skeleton, "");
+  EXPECT_REFUSED(FormatError, "there is no .asf in", hashes_of(folder_ / "a/deep/x.amc", {}));
   folder_.write("a/deep/x.asf", "1");
-  const SourceHashes before = hashes_of(folder_ / "a/deep/x.amc");
+  const SourceHashes before = hashes_of(folder_ / "a/deep/x.amc", {});
   folder_.write("a/deep/x.asf", "2");
-  const SourceHashes after = hashes_of(folder_ / "a/deep/x.amc");
+  const SourceHashes after = hashes_of(folder_ / "a/deep/x.amc", {});
   EXPECT_EQ(before.file, after.file);
   EXPECT_NE(before.skeleton, after.skeleton);
 }

@@ -40,7 +40,7 @@ MotionFile written_and_read(const Motion& motion) {
 
 Motion read_bvh_text(const std::string& text) {
   const TemporaryFolder folder;
-  return read_bvh(folder.write("walk.bvh", text), {.bvh_unit_m = 1.0}).motion;
+  return read_bvh(folder.write("walk.bvh", text), {.unit_m = 1.0}).motion;
 }
 
 // Joints of the same name (the roots are one) have the same pivots and rotations in every frame,

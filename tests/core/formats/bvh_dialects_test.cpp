@@ -18,7 +18,7 @@ using testing::kOrders;
 using testing::matrix_of;
 using testing::TemporaryFolder;
 
-MotionFile read_text(const std::string& text, ReadOptions options = {.bvh_unit_m = 1.0}) {
+MotionFile read_text(const std::string& text, ReadOptions options = {.unit_m = 1.0}) {
   const TemporaryFolder folder;
   return testing::sound(read_bvh(folder.write("walk.bvh", text), options));
 }

@@ -20,7 +20,7 @@ using testing::kOrders;
 using testing::matrix_of;
 using testing::TemporaryFolder;
 
-MotionFile read_text(const std::string& text, ReadOptions options = {.bvh_unit_m = 1.0}) {
+MotionFile read_text(const std::string& text, ReadOptions options = {.unit_m = 1.0}) {
   const TemporaryFolder folder;
   return testing::sound(read_bvh(folder.write("walk.bvh", text), options));
 }
@@ -298,12 +298,12 @@ TEST(ReadBvh, MovingJointsHaveOffsetTracks) {
   EXPECT_TRUE(still.motion.offset_tracks.empty());
 }
 
-TEST(ReadBvh, GuessesTheUnitButDoesNotApplyIt) {
+TEST(ReadBvh, SaysThatAFigureIsOfUnusualSize) {
   const auto file = read_text(
       "HIERARCHY ROOT A { OFFSET 0 0 0 CHANNELS 1 Xrotation End Site { OFFSET 0 1700 0 } }\n"
       "MOTION Frames: 1 Frame Time: 0.1\n0",
       {});
-  EXPECT_TRUE(has_warning(file, "measures 17 m; with lengths in mm"));
+  EXPECT_TRUE(has_warning(file, "measures 17 m; if that is not its size, choose the file's unit"));
   EXPECT_TRUE(file.motion.skeleton.joint(0).bone.isApprox(Vec3(0, 17, 0)));
 }
 
@@ -312,8 +312,8 @@ TEST(ReadBvh, TurnsOtherUpAxesToY) {
   text = testing::replaced(text, "0 90 0\n", "20 40 30\n");
   const auto as_written = read_text(text);
   const auto turned = [](const Vec3& v) { return Vec3(v.x(), v.z(), -v.y()); };
-  const auto z_up = read_text(text, {.bvh_unit_m = 1.0, .bvh_up = Axis::z});
-  const auto x_up = read_text(text, {.bvh_unit_m = 1.0, .bvh_up = Axis::x});
+  const auto z_up = read_text(text, {.unit_m = 1.0, .up = Axis::z});
+  const auto x_up = read_text(text, {.unit_m = 1.0, .up = Axis::x});
   const auto from = as_written.motion.transforms(1);
   for (std::size_t j = 0; j < 2; ++j) {
     EXPECT_TRUE(z_up.motion.transforms(1).end[j].isApprox(turned(from.end[j]), 1e-12));
@@ -333,7 +333,7 @@ TEST(ReadBvh, KeepsZeroBones) {
 TEST(ReadBvh, ReadsASkeletonWithoutMotionWhenAsked) {
   const auto text =
       kTwoJoints.substr(0, kTwoJoints.find("Frames")) + "Frames: 0\nFrame Time: 0.1\n";
-  const auto file = read_text(text, {.bvh_unit_m = 1.0, .allow_no_frames = true});
+  const auto file = read_text(text, {.unit_m = 1.0, .allow_no_frames = true});
   EXPECT_EQ(file.motion.num_frames(), 0);
   EXPECT_EQ(file.motion.skeleton.num_joints(), 2);
 }

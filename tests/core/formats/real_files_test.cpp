@@ -90,7 +90,7 @@ TEST(RealFiles, CmuAmcAndBvhAgree) {
   for (const std::string trial : {"02_01", "02_02", "02_05"}) {
     const auto amc = read_motion_file(real_data("cmu/asf_amc/" + trial + ".amc")).motion;
     const auto bvh =
-        read_bvh(real_data("cmu/bvh/" + trial + ".bvh"), {.bvh_unit_m = 0.0254 / 0.45}).motion;
+        read_bvh(real_data("cmu/bvh/" + trial + ".bvh"), {.unit_m = 0.0254 / 0.45}).motion;
     ASSERT_EQ(bvh.num_frames(), amc.num_frames() + 1) << "a leading T-pose";
     double worst = 0.0;
     for (int frame = 0; frame < amc.num_frames(); frame += 5) {
