@@ -127,6 +127,8 @@ def bind(context: Context, armature: Object, limbs: str = "FK") -> Target:
 def _check_visible(context: Context, armature: Object) -> None:
     if armature.name not in context.view_layer.objects or not armature.visible_get():
         raise InputError(f'"{armature.name}" is hidden: show it in the viewport first')
+    if armature.mode == "EDIT":
+        raise InputError(f'"{armature.name}" is in Edit Mode: leave it first')
     if armature.data.pose_position == "REST":
         raise InputError(f'"{armature.name}" shows its rest position: switch to Pose Position')
 
