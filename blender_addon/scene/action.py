@@ -13,8 +13,8 @@ import numpy as np
 from bpy.types import Action, FCurve, Keyframe, Scene
 from numpy.typing import NDArray
 
-from ..session.key_reduction import kept_keys, quaternion_distance
-from ..session.steps import finished
+from ..session.key_reduction import kept_key_steps, quaternion_distance
+from ..session.steps import Steps, finished, part
 from .armature import Rig, rest_orientation
 from .axes import bone_quaternions, continuous, to_blender
 from .compat import new_curve_of
@@ -36,17 +36,30 @@ class Reduction:
     degrees: float
     distance: float  # in the armature's units
 
-    def kept(
+    def kept_steps(
         self, what: str, frames: NDArray[np.float64], track: NDArray[np.float64]
-    ) -> NDArray[np.intp]:
+    ) -> Steps[NDArray[np.intp]]:
         """The keys of a track (T, n) that stay; what: the channel's name."""
-        if what == LOCATION:
-            return kept_keys(frames, track, self.distance)
-        if what == ROTATION:
-            return kept_keys(frames, track, quaternion_distance(self.degrees))
-        if what == EULER:  # three turns one after another
-            return kept_keys(frames, track, np.radians(self.degrees) / np.sqrt(3.0))
+        errors = {
+            LOCATION: self.distance,
+            ROTATION: quaternion_distance(self.degrees),
+            EULER: np.radians(self.degrees) / np.sqrt(3.0),  # three turns one after another
+        }
+        if what not in errors:
+            return np.arange(len(frames))
+        return (yield from kept_key_steps(frames, track, errors[what]))
+
+
+def kept_steps(
+    reduction: Reduction | None,
+    what: str,
+    frames: NDArray[np.float64],
+    track: NDArray[np.float64],
+) -> Steps[NDArray[np.intp]]:
+    """The keys of a track that stay; without a reduction all."""
+    if reduction is None:
         return np.arange(len(frames))
+    return (yield from reduction.kept_steps(what, frames, track))
 
 
 def action_steps(
@@ -81,7 +94,8 @@ def action_steps(
                 tracks = {LOCATION: (moved - origin) @ rest[joint], ROTATION: turned}
             yield joint / len(rig.bones)
             for what, track in tracks.items():
-                kept = slice(None) if reduction is None else reduction.kept(what, frames, track)
+                choosing = kept_steps(reduction, what, frames, track)
+                kept = yield from part(choosing, joint / len(rig.bones), 0.0)
                 for index, values in enumerate(track.T):
                     action.name  # noqa: B018 - raises ReferenceError after an undo
                     set_keys(new_curve(path + what, index, bone), frames[kept], values[kept])

@@ -13,7 +13,7 @@ from mathutils import Euler, Quaternion
 from ..session.errors import InputError
 from ..session.retarget import RigTake
 from ..session.steps import Steps, part
-from .action import EULER, LOCATION, ROTATION, Reduction, set_keys
+from .action import EULER, LOCATION, ROTATION, Reduction, kept_steps, set_keys
 from .axes import Floats
 from .compat import Curves, curves_for
 
@@ -57,7 +57,8 @@ def rig_action_steps(
                 values[_rotation_path(mode)] = yield from part(steps, begin, 0.5 * share)
             for what, columns in values.items():
                 path = f'pose.bones["{bpy.utils.escape_identifier(track.bone)}"].{what}'
-                kept = slice(None) if reduction is None else reduction.kept(what, frames, columns)
+                choosing = kept_steps(reduction, what, frames, columns)
+                kept = yield from part(choosing, begin + 0.5 * share, 0.0)
                 for index, column in enumerate(columns.T):
                     action.name  # noqa: B018 - raises ReferenceError after an undo
                     set_keys(curves.new(path, index, track.bone), frames[kept], column[kept])

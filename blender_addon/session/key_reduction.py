@@ -9,15 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .core import core
+from .steps import Steps, finished
 
 Floats = NDArray[np.float64]
 
+_TRIED_AT_ONCE = 100
 
-def kept_keys(times: Floats, values: Floats, largest_error: float) -> NDArray[np.intp]:
+
+def kept_key_steps(times: Floats, values: Floats, largest_error: float) -> Steps[NDArray[np.intp]]:
     """The indices of the keys to keep, so that lines between them miss no value by more.
 
     times (T,) ascend; values (T, n); the error is the Euclidean distance at the same time
-    (Douglas and Peucker 1973, with the distance along time).
+    (Douglas and Peucker 1973, with the distance along time). Yields now and then.
     """
     num_keys = len(times)
     if num_keys < 3 or largest_error <= 0.0:
@@ -25,7 +28,11 @@ def kept_keys(times: Floats, values: Floats, largest_error: float) -> NDArray[np
     kept = np.zeros(num_keys, dtype=bool)
     kept[[0, -1]] = True
     stretches = [(0, num_keys - 1)]
+    num_tried = 0
     while stretches:
+        num_tried += 1
+        if num_tried % _TRIED_AT_ONCE == 0:
+            yield float(kept.mean())
         begin, end = stretches.pop()
         if end - begin < 2:
             continue
@@ -38,6 +45,11 @@ def kept_keys(times: Floats, values: Floats, largest_error: float) -> NDArray[np
             kept[middle] = True
             stretches += [(begin, middle), (middle, end)]
     return np.flatnonzero(kept)
+
+
+def kept_keys(times: Floats, values: Floats, largest_error: float) -> NDArray[np.intp]:
+    """As kept_key_steps, without steps."""
+    return finished(kept_key_steps(times, values, largest_error))
 
 
 def quaternion_distance(degrees: float) -> float:
