@@ -79,14 +79,16 @@ def _register_bare_panel(error: Exception) -> None:
     """Register a panel that needs no other file of the add-on."""
     import bpy
 
-    lost = (getattr(error, "name", None) or "").removeprefix(f"{__package__}.").replace(".", "/")
-    is_lost = isinstance(error, ModuleNotFoundError) and lost
-    what = f"{lost}.py is missing" if is_lost else " ".join(str(error).split())
-    reason = f"The installation is incomplete ({what}): reinstall the add-on from the release file"
+    reason = (
+        "Files of Sparse Mocap are missing or damaged: reinstall the add-on from the release file"
+    )
+    print(f"{reason} ({type(error).__name__}: {error})")
 
     def draw(self: bpy.types.Panel, _: bpy.types.Context) -> None:
-        for line in textwrap.wrap(reason, 32):
-            self.layout.label(text=line)
+        column = self.layout.box().column(align=True)
+        column.alert = True
+        for line in textwrap.wrap(reason, 26):
+            column.label(text=line)
 
     settings = {
         "bl_label": "Sparse Mocap",
