@@ -7,20 +7,23 @@ import bpy
 from bpy.props import BoolProperty, CollectionProperty, FloatProperty, IntProperty, StringProperty
 from bpy.types import Context, Event, Operator, OperatorFileListElement
 
+from ..scene.animated import AnimatedArmature, animated_armatures, sampled_steps
 from ..scene.settings import settings_of
 from ..session.database import (
+    BUILDING,
     SUFFIX,
     BuildChoices,
     BuildSummary,
+    build_from_motions_steps,
     build_job,
     checked_output,
     databases,
     default_output,
     last_build,
 )
-from ..session.errors import one_line
+from ..session.errors import InputError, one_line
 from ..session.job import Job
-from ..session.steps import Steps
+from ..session.steps import Steps, part
 from .job_operator import JobOperator
 
 SKIP = {"SKIP_SAVE"}
@@ -141,6 +144,69 @@ class SPARSEMOCAP_OT_build_database(JobOperator, Operator):
         )
 
 
+class SPARSEMOCAP_OT_build_from_file(JobOperator, Operator):
+    """Build a motion database from the armatures of the open file."""
+
+    bl_idname = "sparse_mocap.build_from_file"
+    bl_label = "Build from What Is in This File"
+    bl_description = (
+        "Build a motion database from every action of the scene's armatures. Import FBX, glTF or"
+        " USD files first, then use this"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    steps_label = BUILDING
+    filepath: StringProperty(
+        name="Save as", description="The .smdb file to write", subtype="FILE_PATH", options=SKIP
+    )
+    filter_glob: StringProperty(default=f"*{SUFFIX}", options={"HIDDEN", "SKIP_SAVE"})
+
+    def invoke(self, context: Context, event: Event) -> set[str]:
+        """Ask where to save first."""
+        if self.filepath or bpy.app.background:
+            return super().invoke(context, event)
+        settings = settings_of(context.scene)
+        self.filepath = settings.output or default_output(bpy.data.filepath or "motions")
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: Context) -> set[str]:
+        """Continue after the file browser; blocking for scripts."""
+        return super().execute(context) if bpy.app.background else self.start(context)
+
+    def prepare(self, context: Context) -> Job:
+        """Find what moves; it is sampled in slices afterwards."""
+        path = checked_output(bpy.path.abspath(self.filepath))
+        animated = animated_armatures(context)
+        if not animated:
+            raise InputError(
+                "No armature in this scene has an action that moves its bones: import some motion"
+            )
+        return Job(BUILDING, lambda progress: (path, animated))
+
+    def apply(self, context: Context, result: tuple[str, list[AnimatedArmature]]) -> Steps[str]:
+        """Sample the actions, build, and use the new database."""
+        path, animated = result
+        settings = settings_of(context.scene)
+        render = context.scene.render
+        choices = BuildChoices(
+            settings.rate_hz, settings.mirror, settings.reverse, settings.tempos, settings.strict
+        )
+        sampled = yield from part(sampled_steps(context, animated), 0.0, 0.7)
+        motions = [
+            (
+                f"{entry.armature}/{entry.action}".replace("..", "_"),
+                bones.motion(render.fps / render.fps_base),
+            )
+            for entry, bones in sampled
+        ]
+        summary = yield from part(build_from_motions_steps(motions, path, choices), 0.7, 0.3)
+        settings_of(context.scene).database = summary.path
+        skipped = f", {len(summary.skipped)} skipped" if summary.skipped else ""
+        clips = f"{summary.num_clips} clips from {summary.num_files} actions"
+        return f"Built a database of {clips}{skipped}"
+
+
 class SPARSEMOCAP_OT_add_sources(Operator):
     """Add folders or motion files to build the database from."""
 
@@ -221,6 +287,7 @@ CLASSES = (
     SPARSEMOCAP_OT_open_database,
     SPARSEMOCAP_OT_choose_output,
     SPARSEMOCAP_OT_build_database,
+    SPARSEMOCAP_OT_build_from_file,
     SPARSEMOCAP_OT_add_sources,
     SPARSEMOCAP_OT_remove_source,
     SPARSEMOCAP_OT_show_build_report,

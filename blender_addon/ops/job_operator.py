@@ -31,6 +31,7 @@ class JobOperator:
     _job: Job | None = None
     _slices: Slices[str] | None = None
     _timer: Any = None
+    steps_label = "Setting keys"  # shown while apply() runs
     report: Callable[[set[str], str], None]  # the operator's own
     properties: Any  # the operator's own
 
@@ -129,7 +130,7 @@ class JobOperator:
         if slices is None:
             compat.redraw_views(context)  # the sidebar shows the job
         fraction = job.fraction if slices is None else slices.fraction
-        label = job.label if slices is None else "Setting keys"
+        label = job.label if slices is None else self.steps_label
         compat.show_status(context, label, fraction)
         if not compat.HAS_PROGRESS_BAR:
             context.window_manager.progress_update(int(100 * fraction))

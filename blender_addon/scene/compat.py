@@ -97,6 +97,36 @@ def assign_action(obj: Object, action: Action) -> None:
         data.action_slot = action.slots[0]
 
 
+Playing = tuple[Any, Any, bool]
+"""What an object plays: its action, the action's slot where there are any, and whether its strips
+play too."""
+
+
+def playing(obj: Object) -> Playing | None:
+    """What the object plays; None for one that was never animated."""
+    data = obj.animation_data
+    if data is None:
+        return None
+    return data.action, getattr(data, "action_slot", None), data.use_nla
+
+
+def play_alone(obj: Object, action: Action) -> None:
+    """Let the object play this action and no strips."""
+    assign_action(obj, action)
+    obj.animation_data.use_nla = False
+
+
+def play_again(obj: Object, before: Playing | None) -> None:
+    """Let the object play what it did before."""
+    if before is None:
+        obj.animation_data_clear()
+        return
+    data = obj.animation_data or obj.animation_data_create()
+    data.action, slot, data.use_nla = before
+    if slot is not None:
+        data.action_slot = slot
+
+
 def file_handler(name: str, label: str, operator: str, endings: str) -> type:
     """A file handler that calls the operator for files dropped on a 3D view."""
 

@@ -86,6 +86,7 @@ def _build_form(
         BUILDING,
         is_ready=bool(settings.source),
     )
+    box.operator("sparse_mocap.build_from_file", icon="ARMATURE_DATA")
 
 
 def _sources(column: UILayout, settings: SPARSEMOCAP_PG_settings) -> None:
