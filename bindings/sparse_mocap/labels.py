@@ -49,6 +49,8 @@ class LabelRow:
     file: str
     """As written."""
     labels: Labels
+    is_of_index: bool = False
+    """Whether the table lists a whole collection, of which a folder holds a part."""
 
 
 def read_labels(path: str | os.PathLike[str]) -> dict[str, LabelRow]:
@@ -126,7 +128,7 @@ def _lies_in(path: str, folder: str | None) -> bool:
 
 
 def _unused(table: Path, rows: dict[str, LabelRow], known: Iterable[str]) -> list[str]:
-    unused = [rows[name] for name in rows.keys() - set(known)]
+    unused = [rows[name] for name in rows.keys() - set(known) if not rows[name].is_of_index]
     return [
         f"{table}:{row.line}: no motion file is called {_quoted(row.file)}"
         for row in sorted(unused, key=lambda row: row.line)
@@ -197,7 +199,7 @@ def _row(
         raise TableError(path, line, "names no file; write its name or leave the row out")
     rate_hz = _rate_hz(path, line, said["rate_hz"])
     labels = Labels(said["actor"], said["class"], said["source"], said["license"], rate_hz)
-    return LabelRow(line, said["file"], labels)
+    return LabelRow(line, said["file"], labels, is_of_index="subject" in said)
 
 
 def _rate_hz(path: str | os.PathLike[str], line: int, text: str) -> float:

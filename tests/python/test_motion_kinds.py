@@ -249,11 +249,12 @@ def test_the_rate_of_each_file_in_the_table(cli: Cli, tmp_path: Path) -> None:
     index = tmp_path / "index.csv"
     index.write_text(
         '"Subject","Trial #","Motion Description","framerate","Frames 60fps","Status"\n'
-        '1,1,"walk, slowly",60,30,"Centered"\n1,2,"stroll",120,45,""\n'
+        '1,1,"walk, slowly",60,30,"Centered"\n1,2,"stroll",120,45,""\n77,1,"elsewhere",60,1,""\n'
     )
     result = cli("database", "build", folder, "-o", tmp_path / "cmu.smdb", "--metadata", index,
                  "--no-tempo-copies")  # fmt: skip
     assert result.exit_code == 0, result.output
+    assert "77_01" not in result.stderr
     by_source = {clip.source: clip for clip in MotionDatabase(tmp_path / "cmu.smdb").clips}
     assert by_source["01_01.bvh"].motion_class == "walk, slowly"
     assert by_source["01_02.bvh"].source_rate_hz == pytest.approx(120)
