@@ -11,6 +11,7 @@ import bpy
 from bpy.props import IntProperty
 from bpy.types import Context, Operator
 
+from ..scene import compat
 from ..scene import live as live_scene
 from ..scene.armature import is_ours
 from ..scene.online import check_online_access
@@ -233,6 +234,8 @@ class SPARSEMOCAP_OT_stop_take(JobOperator, Operator):
     def prepare(self, context: Context) -> Job:
         """Save the take and reconstruct it."""
         settings, session = settings_of(context.scene), connected()
+        if settings.record_plays:
+            compat.play(context, is_wanted=False)
         armatures = chosen_armatures(context)
         previewed = live_scene.followed()
         if previewed is not None and is_ours(previewed) and not armatures:

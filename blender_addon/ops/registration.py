@@ -26,6 +26,7 @@ from . import (
     live,
     mapping,
     reconstruct,
+    record,
     sensor_table,
     take,
 )
@@ -43,6 +44,7 @@ CLASSES = (
     *calibrate.CLASSES,
     *character.CLASSES,
     *bake.CLASSES,
+    *record.CLASSES,
 )
 
 
@@ -83,11 +85,13 @@ def register() -> None:
     bpy.app.handlers.load_pre.append(_before_load)
     bpy.app.handlers.save_pre.append(_before_save)
     bpy.app.handlers.save_post.append(_after_save)
+    record.add_shortcut()
     atexit.register(_end_all)
 
 
 def unregister() -> None:
     """Stop everything and unregister the operators."""
+    record.remove_shortcut()
     live_scene.stop_ticking()
     prompt.hide()
     _end_all()

@@ -157,6 +157,17 @@ def is_busy(context: Context) -> bool:
     return is_rendering() or any(tool.bl_idname.startswith(_DRAGS) for tool in modal)
 
 
+def play(context: Context, *, is_wanted: bool) -> None:
+    """Start or stop playback; the current frame stays. Without a window nothing plays."""
+    screen = context.screen
+    if bpy.app.background or screen is None or screen.is_animation_playing == is_wanted:
+        return
+    if is_wanted:
+        bpy.ops.screen.animation_play()
+    else:
+        bpy.ops.screen.animation_cancel(restore_frame=False)
+
+
 def show_status(context: Context, text: str, fraction: float) -> None:
     """Show in the status bar what is running, its progress and how to cancel."""
 

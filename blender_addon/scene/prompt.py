@@ -17,6 +17,7 @@ _COLOUR = (1.0, 0.75, 0.2, 1.0)
 _SHADOW = (0.0, 0.0, 0.0, 0.9)
 
 _handler: Any = None
+_countdown = 0
 
 
 def show() -> None:
@@ -24,6 +25,16 @@ def show() -> None:
     global _handler
     if _handler is None:
         _handler = bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL")
+
+
+def show_countdown(seconds: int) -> None:
+    """Show how many seconds are left; 0 ends it."""
+    global _countdown
+    _countdown = seconds
+    if seconds > 0:
+        show()
+    elif jobs.current() is None:
+        hide()
 
 
 def hide() -> None:
@@ -35,6 +46,11 @@ def hide() -> None:
 
 
 def _draw() -> None:
+    if _countdown > 0:
+        left, width, height = _free_view()
+        _line("Recording starts in", 0.5 * _LARGEST_PX, left, width, 0.62 * height)
+        _line(str(_countdown), 2.5 * _LARGEST_PX, left, width, 0.62 * height - 3.0 * _LARGEST_PX)
+        return
     job = jobs.current()
     if job is None or job.label != CALIBRATING or job.is_cancelled:
         return

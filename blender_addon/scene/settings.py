@@ -259,6 +259,20 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
         name="Extend scene",
         description="Move the scene's end if the take would end after it",
     )
+    countdown_s: IntProperty(
+        name="Countdown (s)",
+        description="Seconds before a recording starts, shown in large letters",
+        default=3,
+        min=0,
+        max=60,
+    )
+    record_plays: BoolProperty(
+        name="Play timeline",
+        description=(
+            "Play the timeline and its sound while recording. "
+            "The take then starts on the frame where the recording began"
+        ),
+    )
     in_place: BoolProperty(
         name="In place", description="Keep the live character at the origin while it moves"
     )

@@ -137,7 +137,11 @@ def _recording(layout: UILayout, context: Context, state: LiveState) -> None:
     if state.recording is None:
         row = layout.row()
         row.scale_y = 1.5
-        row.operator("sparse_mocap.record_take", icon="REC")
+        row.operator("sparse_mocap.record_or_stop", text="Record", icon="REC")
+        settings = settings_of(context.scene)
+        row = layout.row(align=True)
+        row.prop(settings, "countdown_s")
+        row.prop(settings, "record_plays", text="", icon="PLAY", toggle=True)
     else:
         action_button(
             layout, "sparse_mocap.stop_take", "SNAP_FACE", sensors.SAVING_TAKE, is_ready=True

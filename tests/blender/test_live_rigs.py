@@ -194,3 +194,14 @@ def test_a_recording_becomes_an_action_on_the_live_character(tmp_path):
         paths = {curve.data_path for curve in addon("scene.compat").curves_of(action)}
         assert any("J_Bip_L_UpperLeg" in path for path in paths)
         assert str(library().database) == settings().database
+
+
+def test_a_recording_starts_on_the_frame_where_it_began(tmp_path):
+    with connected(tmp_path) as session:
+        armature = rigs.named_rig("vrm")
+        settings().target, settings().record_plays = armature, True
+        bpy.context.scene.frame_set(42)
+        assert bpy.ops.sparse_mocap.record_or_stop() == {"FINISHED"}
+        until(lambda: session.state.recording and session.state.recording["samples"] > 800)
+        assert bpy.ops.sparse_mocap.stop_take() == {"FINISHED"}
+        assert armature.animation_data.action.frame_range[0] == 42.0
