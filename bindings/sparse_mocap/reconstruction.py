@@ -174,15 +174,12 @@ def with_locations(take: Take, calibration: Calibration | None) -> Take:
     Nobody said where these are worn. Raises ConfigError when no other is left.
     """
     devices = devices_of(take)
-    calibrated = (
-        {*calibration.sensors, *(s.device for s in calibration.sensors.values())}
-        if (calibration)
-        else set()
-    )
+    known = {*site_names(), *(calibration.sensors if calibration else ())}
+    calibrated = {s.device for s in calibration.sensors.values()} if calibration else set()
     sensors = {
         name: record
         for name, record in take.sensors.items()
-        if name in site_names() or name in calibrated or devices.get(name) != name
+        if name in known or name not in devices or devices[name] in calibrated
     }
     if not sensors:
         first = next(iter(take.sensors))

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from . import Motion, simulate
 from .table_errors import TakeError
-from .take_file import read_columns, write_columns
+from .take_file import device_comment as device_comment
+from .take_file import named_devices, read_columns, write_columns
 
 Floats = NDArray[np.float64]
 Path = str | os.PathLike[str]
@@ -21,7 +22,6 @@ __all__ = [
     "SensorRecord",
     "Take",
     "TakeError",
-    "device_comment",
     "devices_of",
     "read_take",
     "simulated",
@@ -69,22 +69,10 @@ class Take:
         return max(float(record.times_s[-1]) for record in self.sensors.values())
 
 
-_DEVICE = "device of "
-
-
-def device_comment(name: str, identity: str) -> str:
-    """Returns the comment that says which device a take's sensor was."""
-    return f"{_DEVICE}{name}: {identity}"
-
-
 def devices_of(take: Take) -> dict[str, str]:
     """Returns the identities of the devices that a take's sensors were, as far as it says."""
-    devices = {}
-    for comment in take.comments:
-        name, colon, identity = comment.removeprefix(_DEVICE).partition(": ")
-        if comment.startswith(_DEVICE) and colon and name in take.sensors:
-            devices[name] = identity.strip()
-    return devices
+    named = named_devices(take.comments)
+    return {name: named[name] for name in take.sensors if name in named}
 
 
 def read_take(path: Path) -> Take:

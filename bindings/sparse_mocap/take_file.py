@@ -15,7 +15,13 @@ from . import site_names
 from .files import write_text
 from .table_errors import TakeError, read_lines
 
-__all__ = ["TakeColumns", "read_columns", "write_columns"]
+__all__ = [
+    "TakeColumns",
+    "device_comment",
+    "named_devices",
+    "read_columns",
+    "write_columns",
+]
 
 Floats = NDArray[np.float64]
 Names = NDArray[np.str_]
@@ -44,6 +50,24 @@ class TakeColumns:
     orientation: Floats | None
     position: Floats | None
     comments: tuple[str, ...]
+
+
+_DEVICE = "device of "
+
+
+def device_comment(name: str, identity: str) -> str:
+    """Returns the comment that says which device a take's sensor was."""
+    return f"{_DEVICE}{name}: {identity}"
+
+
+def named_devices(comments: Sequence[str]) -> dict[str, str]:
+    """Returns the identities of the devices by the names of their sensors, as comments say."""
+    devices = {}
+    for comment in comments:
+        name, colon, identity = comment.removeprefix(_DEVICE).rpartition(": ")
+        if comment.startswith(_DEVICE) and colon:
+            devices[name] = identity.strip()
+    return devices
 
 
 def read_columns(path: Path) -> TakeColumns:
@@ -151,14 +175,14 @@ def _stacked(rows: NDArray[Any], names: Sequence[str]) -> Floats:
 
 def _check_rows(path: Path, columns: TakeColumns, lines: NDArray[np.intp]) -> None:
     _check_values(path, columns, lines)
-    known = site_names()
+    known = {*site_names(), *named_devices(columns.comments)}
     for site in dict.fromkeys(columns.sensors.tolist()):
         rows = np.flatnonzero(columns.sensors == site)
         if site not in known:
             raise TakeError(
                 path,
                 int(lines[rows[0]]),
-                f"sensor {site!r} is unknown; known are {', '.join(known)}",
+                f"sensor {site!r} is unknown; known are {', '.join(site_names())}",
             )
         times = columns.times_s[rows]
         late = np.flatnonzero(np.diff(times) <= 0)

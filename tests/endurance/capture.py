@@ -5,6 +5,8 @@
     ./dev endure steady [SECONDS]  # default 600
     ./dev endure kill [TIMES]      # default 100
     ./dev endure replug [TIMES]    # default 20
+    ./dev endure silence [SECONDS] # default 10: the longest silence
+    ./dev endure order [TIMES]     # default 4: each of the 24 orders so often
 
 `steady`: six sensors at 200 Hz from an emulator in a process of its own. A client stalls for 5 s
 now and then, and is replaced by another. Counted: samples lost on the way, samples that the clients
@@ -16,10 +18,18 @@ ports left behind.
 
 `replug`: the device is unplugged and comes back as another pseudo-terminal. Measured: how long it
 takes from its return to its first sample.
+
+`silence`: with each driver, the device sends nothing for 0.1 s to that long, restarts, and is
+played again from the start. Measured: how long it takes from the return of the data until live
+readings are true, and how far the take's length is off the wall clock, at worst.
+
+`order`: four trackers over UDP start in each order, and one comes back from another address.
+Counted: takes in which a tracker is not on its limb.
 """
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import random
@@ -37,6 +47,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python" / "capture"))
 
 from capture_support import SITES, some_take
+from silence_support import DRIVERS, silence
 from sparse_mocap.capture import (
     CaptureClient,
     CaptureConfig,
@@ -50,6 +61,7 @@ from sparse_mocap.capture import (
 )
 from sparse_mocap.capture.ports import open_port
 from sparse_mocap.capture.session import FOLDER_VARIABLE, runtime_folder, sessions
+from trackers_support import are_on_their_limbs
 
 DRIVER, NUM_SENSORS, RATE_HZ = "xsens_mt", 6, 200.0
 OPTIONS = {"output": "mtdata", "num_sensors": str(NUM_SENSORS), "rate_hz": f"{RATE_HZ:g}"}
@@ -237,7 +249,40 @@ def replug(folder: Path, times: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
-PROOFS = {"steady": (steady, 600), "kill": (kill, 100), "replug": (replug, 20)}
+def silences(folder: Path, longest_s: int) -> dict[str, Any]:
+    told: dict[str, Any] = {}
+    lengths = [length for length in (0.1, 0.3, 1.0, 3.0, 10.0) if length <= longest_s]
+    for driver in DRIVERS:
+        stalls, at = [], 2.0
+        for length in lengths:
+            stalls.append((at, length))
+            at += length + 2.0
+        found = [
+            silence(folder, driver, at + 1.0, Faults(stalls=tuple(stalls))),
+            silence(folder, driver, 6.0, Faults(resets_s=(2.0, 4.0))),
+            silence(folder, driver, 4.0, Faults(), plays=3),
+            silence(folder, driver, 8.0, Faults(cut_after_s=2.0, replug_after_s=1.0)),
+        ]
+        told[driver] = {
+            "back_s": [round(one.back_s, 3) for one in found],
+            "length_error_percent": [round(100 * one.length_error, 3) for one in found],
+            "false_readings": [one.num_false for one in found],
+        }
+    return told
+
+
+def order(folder: Path, times: int) -> dict[str, Any]:
+    wrong = 0
+    orders = list(itertools.permutations(range(4)))
+    for number, starts in enumerate(orders * times):
+        wrong += not are_on_their_limbs(folder / f"o{number}", starts)
+    return {"takes": len(orders) * times, "wrong": wrong}
+
+
+PROOFS = {
+    "steady": (steady, 600), "kill": (kill, 100), "replug": (replug, 20),
+    "silence": (silences, 10), "order": (order, 4),
+}  # fmt: skip
 
 
 def main(arguments: list[str]) -> None:

@@ -289,3 +289,32 @@ def test_empty_lines_in_a_table_are_told_unless_they_end_it(tmp_path: Path) -> N
     path.write_text(PHYPHOX + "\n0,0,0,9.8\n\n0.01,0,0,9.8\n")
     with pytest.raises(RecordingError, match=r":3: expected 4 cells"):
         read_recording(path)
+
+
+def phone_export(folder: Path, size: float) -> None:
+    (folder / "meta").mkdir(parents=True)
+    rows = [f"{0.01 * i},0.1,{size},9.81" for i in range(50)]
+    (folder / "Raw Data.csv").write_text("\n".join([PHYPHOX, *rows]) + "\n")
+    (folder / "meta" / "device.csv").write_text('"property","value"\n')
+
+
+def test_every_phone_in_a_folder_is_imported(tmp_path: Path, cli: Cli) -> None:
+    phone_export(tmp_path / "left", 1.0)
+    phone_export(tmp_path / "right", 2.0)
+    inner = tmp_path / "third.zip"
+    zip_of(inner, "Raw Data.csv", f"{PHYPHOX}\n0,0,3,9.8\n0.01,0,3,9.8\n".encode())
+    take = read_recording(tmp_path, {"left": "left_wrist"})
+    assert take.sites == ["left_wrist", "right", "third"]
+    for record, size in zip(take.sensors.values(), (1.0, 2.0, 3.0), strict=True):
+        assert record.specific_force[:, 1] == pytest.approx(size)
+    assert any("synchronize" in comment for comment in take.comments)
+
+
+def test_every_sensor_logger_recording_in_a_folder_is_imported(tmp_path: Path) -> None:
+    for name, size in (("a", 1.0), ("b", 2.0)):
+        (tmp_path / name).mkdir()
+        text = f"time,seconds_elapsed,z,y,x\n1,0.0,9.8,{size},0\n2,0.01,9.8,{size},0\n"
+        (tmp_path / name / "TotalAcceleration.csv").write_text(text)
+    take = read_recording(tmp_path)
+    assert take.sites == ["a", "b"]
+    assert take.sensors["b"].specific_force[:, 1] == pytest.approx(2.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections import deque
+from collections import defaultdict, deque
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -16,6 +16,7 @@ import numpy as np
 
 from .config import CaptureConfig
 from .decoder import Decoder
+from .diagnosis import why_odd_values
 from .errors import LogError, recover_command
 from .link import Arrived, Link, State
 from .raw_log import Kind, Record, sent_by
@@ -27,6 +28,9 @@ __all__ = ["Recorder", "Recording"]
 SILENT_S = 0.1
 """A sensor without a sample for longer than this is reported as silent."""
 _RATE_WINDOW = 5  # ticks
+_ENOUGH_SAMPLES = 200
+_NEWEST_PART = 0.03  # of the average that tells a wrong unit
+_USUAL_SIZE_MPS2 = 9.81
 _SHARED_ID = 0.2  # if this part of the frames is repeated or out of order, two sensors share an id
 
 
@@ -55,6 +59,7 @@ class Recorder:
         self._num_logged_sensors = 0
         self._last: dict[int, Any] = {}
         self._num_of: dict[int, int] = {}
+        self._sizes: defaultdict[int, float] = defaultdict(lambda: _USUAL_SIZE_MPS2)
         self._with_gyroscope: set[int] = set()
         self._with_orientation: set[int] = set()
         self._rates: deque[tuple[float, dict[int, int]]] = deque(maxlen=_RATE_WINDOW)
@@ -224,6 +229,8 @@ class Recorder:
             own = samples[samples["sensor"] == sensor]
             self._num_of[sensor] = self._num_of.get(sensor, 0) + len(own)
             self._last[sensor] = own[-1]
+            size = float(np.median(np.linalg.norm(own["specific_force"], axis=1)))
+            self._sizes[sensor] += _NEWEST_PART * (size - self._sizes[sensor])
             rate = own["angular_velocity"]
             if (np.isfinite(rate) & (rate != 0.0)).any():
                 self._with_gyroscope.add(sensor)
@@ -242,6 +249,9 @@ class Recorder:
         frames = counters.get("samples", 0)
         suspect = counters.get("repeated", 0) + counters.get("out_of_order", 0)
         message = link.message
+        odd = self._why_odd(link)
+        if not message and odd:
+            message = f"{link.opened_as}: {odd}"
         if not message and frames > 100 and suspect > _SHARED_ID * (frames + suspect):
             message = f"{link.opened_as}: two sensors seem to have the same id; change one of them"
         return {
@@ -250,6 +260,15 @@ class Recorder:
             "device_message": self._decoder.message(link.index),
             "bytes": link.num_bytes, "reconnects": link.num_reconnects, "counters": counters,
         }  # fmt: skip
+
+    def _why_odd(self, link: Link) -> str:
+        """What is odd about the values of one of the link's sensors."""
+        for index, sensor in enumerate(self._decoder.sensors):
+            if sensor.link == link.index and self._num_of.get(index, 0) > _ENOUGH_SAMPLES:
+                why = why_odd_values(link.config, sensor.identity, self._sizes[index])
+                if why:
+                    return why
+        return ""
 
     def _sensor_json(self, index: int, now_ns: int) -> dict[str, Any]:
         sensor, last = self._decoder.sensors[index], self._last.get(index)

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import LARGEST_CLOCK_DRIFT, host_times, site_names
-from ..take import SensorRecord, Take, device_comment
+from ..take import SensorRecord, Take
+from ..take_file import device_comment
 from .config import CaptureConfig
 from .decoder import Decoder
 from .errors import RecordingError

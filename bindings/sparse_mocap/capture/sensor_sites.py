@@ -11,6 +11,8 @@ from .config import CaptureConfig
 
 __all__ = ["SensorSites", "sites_of"]
 
+_LONGEST_NAME = 60  # in a take file; the end of a long port tells it from others
+
 
 @dataclass(frozen=True)
 class SensorSites:
@@ -25,7 +27,7 @@ class SensorSites:
 
     def name(self, number: int, identity: str) -> str:
         """A sensor's name in a take: its site, else its identity."""
-        return self.sites[number] or identity.replace(",", " ").strip()
+        return self.sites[number] or identity.replace(",", " ").strip()[-_LONGEST_NAME:]
 
 
 def sites_of(

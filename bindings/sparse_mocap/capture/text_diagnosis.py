@@ -15,6 +15,7 @@ _SEPARATORS = {"comma": ",", "tab": "\t", "semicolon": ";", "space": " "}
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _COMMA_NUMBER = re.compile(r"[+-]?\d+,\d+")
 _LABELLED = re.compile(r"\s*([^\d\s=:,;+-][^=:,;]*?)\s*[=:]\s*([+-]?[\d.].*)")
+_BEGINS_WITH_LABEL = re.compile(r"\s*([A-Za-z][^\s:=,;]*(?:[:=]|(?=[\t ])))\s*[+-]?[\d.]")
 _LEAST_COLUMNS = 3
 _LARGEST_IN_MPS2 = 400.0
 
@@ -78,9 +79,8 @@ def _why_labels(line: str) -> str:
             f"its numbers have labels such as {labels[0]!r}; print the numbers alone, separated by "
             "commas"
         )
-    if len(labels) == 1 and (match := re.match(r"\s*[^\d+-]*[:=]\s*", line)):
-        return f"it begins with a label; set the option prefix={match[0].rstrip()}"
-    return ""
+    match = _BEGINS_WITH_LABEL.match(line)
+    return f"it begins with a label; set the option prefix={match[1]}" if match else ""
 
 
 def _why_separator(line: str, separator: str, settings: Mapping[str, str]) -> str:
@@ -128,7 +128,7 @@ def _is_json(line: str) -> bool:
 def _is_header(line: str) -> bool:
     """Whether the line has names instead of numbers, an axis of an accelerometer among them."""
     fields = [field.strip() for field in re.split(r"[,;\t]", line)]
-    if len(fields) < _LEAST_COLUMNS or any(map(_is_number, fields)):
+    if len(fields) < _LEAST_COLUMNS or any(map(_is_number, fields)) or set(line) & set("{}:="):
         return False
     axes = [re.sub(r"[^a-z]", "", re.split(r"[(\[]", field.lower())[0]) for field in fields]
     wanted = re.compile(r"(a|acc|accel|acceleration|accelerometer)([xyz])")

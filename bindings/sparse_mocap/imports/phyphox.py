@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CSV exports of phyphox (files or zip): one phone."""
+"""CSV exports of phyphox (files or zip): a phone for each export."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..take import SensorRecord
+from .phones import read_phones
 from .tables import RecordingError, Table, Text, check_finite, interpolated, read_table
 
 __all__ = ["read"]
@@ -22,7 +23,11 @@ _RATES = tuple(f"Gyroscope {axis} (rad/s)" for axis in "xyz")
 
 
 def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
-    """Returns the phone's record; None when it is another format."""
+    """Returns a record for each phone; None when it is another format."""
+    return read_phones(texts, notes, _read)
+
+
+def _read(texts: list[Text], _notes: list[str]) -> SensorRecord | None:
     tables = [table for text in texts if (table := _table(text)) is not None]
     if not tables:
         return None
@@ -45,7 +50,7 @@ def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
     for table in tables:
         if table.has(*_RATES):
             turn = interpolated(times_s, table.column(_TIME), table.columns(*_RATES))
-    return {"phone": SensorRecord(times_s, force[keep], turn)}
+    return SensorRecord(times_s, force[keep], turn)
 
 
 def _table(text: Text) -> Table | None:

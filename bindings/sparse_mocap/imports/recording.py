@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..take import SensorRecord, Take, read_take
+from ..take import SensorRecord, Take, devices_of, read_take
+from ..take_file import device_comment
 from . import phyphox, sensor_logger, ximu3, xsens_dot, xsens_mt_manager
 from .tables import RecordingError, Text, find_line, read_texts, shown
 
@@ -48,18 +49,32 @@ def read_recording(path: str | os.PathLike[str], sites: Mapping[str, str] | None
     texts = read_texts(path)
     if len(texts) == 1 and find_line(texts[0], "time_s", "sensor", "ax") is not None:
         take = read_take(path)
-        return Take(_named(path, take.sensors, sites or {}), take.comments)
+        named = _named(path, take.sensors, sites or {})
+        return Take(named, _renamed(take, list(named)))
     for known in _FORMATS:
         notes: list[str] = []
         records = known.read(texts, notes)
         if records is not None:
             origin = f"imported from {Path(path).name} ({known.name})"
             named = _named(path, _from_zero(records), sites or {})
-            return Take(named, (origin, *dict.fromkeys(notes)))
+            devices = [device_comment(*pair) for pair in zip(named, records, strict=True)]
+            return Take(named, (origin, *devices, *dict.fromkeys(notes)))
     raise RecordingError(
         path, 0, f"unknown recording format ({_content(texts)}); supported are "
         + ", ".join(recording_formats())
     )  # fmt: skip
+
+
+def _renamed(take: Take, names: list[str]) -> tuple[str, ...]:
+    """The take's comments, with its devices under new names."""
+    devices = devices_of(take)
+    old = {device_comment(name, identity) for name, identity in devices.items()}
+    new = [
+        device_comment(name, devices[before])
+        for before, name in zip(take.sensors, names, strict=True)
+        if before in devices
+    ]
+    return (*(comment for comment in take.comments if comment not in old), *new)
 
 
 def _from_zero(records: dict[str, SensorRecord]) -> dict[str, SensorRecord]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CSV exports of the app Sensor Logger (files or zip): one phone."""
+"""CSV exports of the app Sensor Logger (files or zip): a phone for each export."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from ..rotations import from_z_up, normalised
 from ..rotations import interpolated as interpolated_rotations
 from ..take import SensorRecord
 from .gravity import STANDARD_GRAVITY_MPS2
+from .phones import read_phones
 from .tables import (
     Floats,
     RecordingError,
@@ -29,7 +30,11 @@ _WITH_GRAVITY = ("totalacceleration", "accelerometeruncalibrated")
 
 
 def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
-    """Returns the phone's record; None when it is another format."""
+    """Returns a record for each phone; None when it is another format."""
+    return read_phones(texts, notes, _read)
+
+
+def _read(texts: list[Text], notes: list[str]) -> SensorRecord | None:
     tables = {
         text.name.lower(): read_table(text, 0, ",")
         for text in texts
@@ -53,7 +58,7 @@ def read(texts: list[Text], notes: list[str]) -> dict[str, SensorRecord] | None:
         table = tables["orientation"]
         values = from_z_up(normalised(table.columns("qw", "qx", "qy", "qz")))
         orientation = interpolated_rotations(times_s, table.column(_TIME), values)
-    return {"phone": SensorRecord(times_s, force, turn, orientation)}
+    return SensorRecord(times_s, force, turn, orientation)
 
 
 def _specific_force(tables: dict[str, Table]) -> tuple[Floats, Floats]:

@@ -104,22 +104,29 @@ def read_texts(path: str | os.PathLike[str]) -> list[Text]:
     source = Path(path)
     limits = _Limits(source)
     if source.is_dir():
-        files = sorted(file for file in source.rglob("*") if file.suffix.lower() in _ENDINGS)
-        files = [file for file in files if file.is_file()]
-        limits.check_size(len(files), sum(file.stat().st_size for file in files))
-        return [limits.text(str(file), file.read_bytes()) for file in files]
+        files = sorted(file for file in source.rglob("*") if file.is_file())
+        plain = [file for file in files if file.suffix.lower() in _ENDINGS]
+        limits.check_size(len(plain), sum(file.stat().st_size for file in plain))
+        texts = [limits.text(str(file), file.read_bytes()) for file in plain]
+        for file in files:
+            texts += _zipped_texts(file, limits) if file.suffix.lower() == ".zip" else []
+        return texts
     if not source.is_file():
         raise RecordingError(source, 0, "is not a file or folder; choose a recording")
     if not zipfile.is_zipfile(source):
         limits.check_size(1, source.stat().st_size)
         return [limits.text(str(source), source.read_bytes())]
+    return _zipped_texts(source, limits)
+
+
+def _zipped_texts(source: Path, limits: _Limits) -> list[Text]:
     try:
-        return _zipped_texts(source, limits)
+        return _unpacked_texts(source, limits)
     except (zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError, EOFError) as error:
         raise RecordingError(source, 0, f"cannot be unpacked ({error}); export it again") from error
 
 
-def _zipped_texts(source: Path, limits: _Limits) -> list[Text]:
+def _unpacked_texts(source: Path, limits: _Limits) -> list[Text]:
     with zipfile.ZipFile(source) as archive:
         infos = [info for info in archive.infolist() if _is_text_name(info.filename)]
         num_bytes = sum(info.file_size for info in infos)
@@ -247,10 +254,13 @@ class _Limits:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._num_lines = 0
+        self._num_files = self._num_bytes = self._num_lines = 0
 
     def check_size(self, num_files: int, num_bytes: int) -> None:
-        """Checks before anything is read."""
+        """Checks before anything is read, together with what was checked before."""
+        self._num_files += num_files
+        self._num_bytes += num_bytes
+        num_files, num_bytes = self._num_files, self._num_bytes
         if num_files > _MOST_FILES or num_bytes > _MOST_BYTES:
             raise RecordingError(
                 self._path, 0, f"has {num_files} files of {num_bytes} bytes, and at most "

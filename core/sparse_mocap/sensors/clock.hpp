@@ -14,7 +14,7 @@ struct ClockSettings {
   // One that has fallen behind, as while the device was stalled: when all arrivals of so long are
   // late by more than radio and buffers make them.
   double late_s = 0.06;
-  double late_for_s = 0.25;
+  double late_for_s = 0.15;
 };
 
 // Maps a device's clock to the host's monotonic one.

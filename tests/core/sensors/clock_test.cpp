@@ -155,7 +155,7 @@ TEST(ClockModel, StartsAnewWhenTheDeviceHasFallenBehind) {
       if (std::abs(told_s - true_s) > 0.03) ++num_late;
     }
     EXPECT_EQ(clock.num_segments(), 2) << pause_s;
-    EXPECT_LE(num_late, 26) << pause_s;
+    EXPECT_LE(num_late, 16) << pause_s;
     EXPECT_NEAR(clock.host_time_s(15.0), 15.0 + pause_s, 2e-3);
   }
 }
