@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from importlib.resources import files
+from pathlib import Path
 
 __all__ = ["GUIDES", "Guide", "sketch", "sketch_names"]
 
@@ -71,5 +71,5 @@ def sketch(name: str) -> str:
     return (_folder() / f"{name}.ino").read_text(encoding="utf-8")
 
 
-def _folder():  # type: ignore[no-untyped-def]
-    return files(__package__) / "sketches"
+def _folder() -> Path:
+    return Path(__file__).with_name("sketches")
