@@ -35,7 +35,7 @@ Config live_config() {
                                 {{-0.32, 0.06, -0.6, kLiveLookAhead_s}},
                                 {{-0.56, 0.08, -0.88, kLiveLookAhead_s}}};
   config.fit.lever_m = 0.2;
-  config.fit.step = 3.0;
+  config.fit.step = 2.0;
   config.fit.smoothness = 0.5;
   return config;
 }
@@ -55,6 +55,7 @@ Config whole_take_config() {
   config.fit.lever_m = 0.2;
   config.fit.step = 3.0;
   config.fit.smoothness = 1.0;
+  config.wide_spread_m = 0.07;
   return config;
 }
 
@@ -91,12 +92,24 @@ const OptionTable<Config>& options() {
                   "weight of even movement from frame to frame")
           .number("twist_lever_m", &Config::fit, &FitWeights::lever_m, 1e-3, 1.0,
                   "how far out a bone's turn about itself is compared, m")
+          .number("wide_spread_m", &Config::wide_spread_m, 1e-3, 1e3,
+                  "how far retrieved poses lie apart that count half, m")
           .number("gravity_weight", &Config::fit, &FitWeights::inclination, 0.0, 1e6,
                   "weight of the limbs' measured inclination")
           .number("contact_weight", &Config::fit, &FitWeights::contact, 0.0, 1e6,
-                  "how firmly a standing foot stays in place")
+                  "how firmly a standing foot stays in place; it may roll as retrieved ones do")
+          .number("stands_from", &Config::fit, &FitWeights::stands_from, 0.0, 1.0,
+                  "certainty below which a foot does not stand")
+          .number("stands_at", &Config::fit, &FitWeights::stands_at, 0.0, 1.0,
+                  "certainty from which on a foot stands for good")
+          .number("foot_height_weight", &Config::fit, &FitWeights::foot_height, 0.0, 1e6,
+                  "how firmly feet stand on the floor, and none below it")
+          .number("turning_weight", &Config::fit, &FitWeights::turning, 0.0, 1e6,
+                  "weight of the measured turning about the vertical")
           .number("root_weight", &Config::fit, &FitWeights::root_step, 0.0, 1e6,
                   "weight of the root's retrieved movement")
+          .number("root_turn_weight", &Config::fit, &FitWeights::root_turn, 0.0, 1e6,
+                  "weight of the root's retrieved turning")
           .number("root_smoothness", &Config::fit, &FitWeights::root_smoothness, 0.0, 1e6,
                   "weight of even movement of the root")
           .integer("max_iterations", &Config::max_iterations, 1, 10'000,

@@ -33,6 +33,7 @@ struct Config {
 
   // What poses and root are fitted to.
   FitWeights fit;
+  double wide_spread_m = 0.15;  // poses that differ so much count half
   int max_iterations = 10;
 };
 

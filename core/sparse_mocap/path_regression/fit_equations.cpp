@@ -17,6 +17,28 @@ constexpr std::array<double, 2> kFirstDifference{1.0, -1.0};
 constexpr std::array<double, 3> kSecondDifference{1.0, -2.0, 1.0};
 constexpr Eigen::Index kRootUnknowns = 4;  // position, heading
 
+// 0 up to one value, 1 from another on, smooth in between.
+double smooth_step(double x, double from, double to) {
+  const double s = std::clamp((x - from) / std::max(to - from, 1e-9), 0.0, 1.0);
+  return s * s * (3.0 - 2.0 * s);
+}
+
+Vec3 rotation_vector(const Mat3& R) {
+  const Eigen::AngleAxisd turn(R);
+  return turn.angle() * turn.axis();
+}
+
+// d rotation_vector(exp(w) R) / d w at w = 0; its transpose is that of rotation_vector(R exp(w)).
+Mat3 rotation_vector_slopes(const Vec3& v) {
+  Mat3 cross;
+  cross << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  const double angle = v.norm();
+  const double square = angle < 1e-4 ? 1.0 / 12.0
+                                     : 1.0 / (angle * angle) - (1.0 + std::cos(angle)) /
+                                                                   (2.0 * angle * std::sin(angle));
+  return Mat3::Identity() - 0.5 * cross + square * cross * cross;
+}
+
 }  // namespace
 
 FitEquations::FitEquations(const Skeleton& skeleton, double frame_time_s, const FitWeights& weights,
@@ -51,12 +73,13 @@ void FitEquations::add_frame(int t) {
   add_pose_terms(t);
   add_inclination(t);
   add_root_terms(t);
-  for (const int side : {0, 1}) add_contact(t, side);
+  for (const std::size_t side : {0U, 1U}) add_foot(t, side);
+  add_turning(t);
 }
 
 void FitEquations::add_pose_terms(int t) {
   const FrameTarget& target = targets_[static_cast<std::size_t>(t)];
-  add_points(weights_.pose, t, kHere, &target.points);
+  add_points(weights_.pose * target.agreement, t, kHere, &target.points);
   if (t >= 1 && target.step.size() > 0)
     add_points(weights_.step, t, kFirstDifference, &target.step);
   if (t >= 2) add_points(weights_.smoothness, t, kSecondDifference, nullptr);
@@ -144,16 +167,25 @@ void FitEquations::add_root_terms(int t) {
   const Mat3 R_world_heading = yaw_rotation(frame(t - 1).yaw_rad);
   const Vec3 step =
       R_world_heading * Vec3(rates.velocity_mps.x(), 0.0, rates.velocity_mps.y()) * frame_time_s_;
-  Eigen::VectorXd moved = stacked(t) - stacked(t - 1);
-  moved -= Eigen::Vector4d(step.x(), moved[1], step.z(), rates.yaw_rate_radps * frame_time_s_);
+  const Eigen::Vector4d wanted(step.x(), 0.0, step.z(), rates.yaw_rate_radps * frame_time_s_);
+  const Eigen::Vector4d scale(std::sqrt(weights_.root_step), 0.0, std::sqrt(weights_.root_step),
+                              std::sqrt(root_turn_weight(t)));
   Share now = share(t, 1.0), before = share(t - 1, -1.0);
-  now.jacobian.row(1).setZero();
-  before.jacobian.row(1).setZero();
   before.jacobian.col(num_angles_ + 3).head<3>() -= kUp.cross(step);
-  add_small(weights_.root_step, moved, {std::move(now), std::move(before)});
+  for (Share* scaled : {&now, &before}) scaled->jacobian = scale.asDiagonal() * scaled->jacobian;
+  add_small(1.0, scale.cwiseProduct(stacked(t) - stacked(t - 1) - wanted),
+            {std::move(now), std::move(before)});
   if (t < 2) return;
   add_small(weights_.root_smoothness, stacked(t) - 2.0 * stacked(t - 1) + stacked(t - 2),
             {share(t, 1.0), share(t - 1, -2.0), share(t - 2, 1.0)});
+}
+
+// Where gyroscopes say how the body turns, retrieved motions have little to say.
+double FitEquations::root_turn_weight(int t) const {
+  constexpr double kBesideGyroscopes = 0.07;
+  const bool is_measured = !targets_[static_cast<std::size_t>(t)].turning.empty();
+  return is_measured && weights_.turning > 0.0 ? kBesideGyroscopes * weights_.root_turn
+                                               : weights_.root_turn;
 }
 
 // Where an ankle is in the world.
@@ -164,23 +196,70 @@ Vec3 FitEquations::foot(int t, int ankle) const {
              seen_[static_cast<std::size_t>(t)].pose.end[static_cast<std::size_t>(ankle)];
 }
 
-void FitEquations::add_contact(int t, int side) {
-  const double stands = targets_[static_cast<std::size_t>(t)].root.contacts[side];
-  if (t < 1 || stands <= 0.0) return;
+FitEquations::Share FitEquations::foot_share(int t, int ankle, double factor) const {
+  Eigen::MatrixXd jacobian = no_share(3);
+  if (!system_ || !is_free(t)) return {t, std::move(jacobian)};
+  const FittedFrame& frame = frames_[static_cast<std::size_t>(t)];
+  jacobian.leftCols(num_angles_) =
+      yaw_rotation(frame.yaw_rad) *
+      seen_[static_cast<std::size_t>(t)].jacobian.middleRows(3 * ankle, 3);
+  jacobian.middleCols(num_angles_, 3).setIdentity();
+  jacobian.col(num_angles_ + 3) = kUp.cross(foot(t, ankle) - frame.root_position);
+  return {t, factor * jacobian};
+}
+
+// A foot that stands moves as retrieved ones do and is as high; another one is not lower.
+void FitEquations::add_foot(int t, std::size_t side) {
+  const retrieval::StandingFeet& feet = targets_[static_cast<std::size_t>(t)].feet;
   const int ankle = side == 0 ? standard_joint::ltibia : standard_joint::rtibia;
-  const auto share = [&](int at, double factor) {
-    Eigen::MatrixXd jacobian = no_share(3);
-    if (!system_ || !is_free(at)) return Share{at, std::move(jacobian)};
-    const FittedFrame& frame = frames_[static_cast<std::size_t>(at)];
-    jacobian.leftCols(num_angles_) =
-        yaw_rotation(frame.yaw_rad) *
-        seen_[static_cast<std::size_t>(at)].jacobian.middleRows(3 * ankle, 3);
-    jacobian.middleCols(num_angles_, 3).setIdentity();
-    jacobian.col(num_angles_ + 3) = kUp.cross(foot(at, ankle) - frame.root_position);
-    return Share{at, factor * jacobian};
-  };
-  add_small(weights_.contact * stands * stands, foot(t, ankle) - foot(t - 1, ankle),
-            {share(t, 1.0), share(t - 1, -1.0)});
+  const auto row = static_cast<Eigen::Index>(side);
+  const double stands = smooth_step(feet.certainty[row], weights_.stands_from, weights_.stands_at);
+  const double above = foot(t, ankle).y() - feet.height_m[row];
+  const double pressed = above < 0.0 ? 1.0 : stands;
+  if (pressed > 0.0)
+    add_small(weights_.foot_height * pressed, Eigen::VectorXd::Constant(1, above),
+              {{t, foot_share(t, ankle, 1.0).jacobian.row(1)}});
+  if (t < 1 || stands <= 0.0) return;
+  const Vec3 step =
+      yaw_rotation(frames_[static_cast<std::size_t>(t - 1)].yaw_rad) * feet.step_m[side];
+  Share before = foot_share(t - 1, ankle, -1.0);
+  if (system_) before.jacobian.col(num_angles_ + 3) -= kUp.cross(step);
+  add_small(weights_.contact * stands, foot(t, ankle) - foot(t - 1, ankle) - step,
+            {foot_share(t, ankle, 1.0), std::move(before)});
+}
+
+// Heading and pose together turn a joint about the vertical as its gyroscope measured, on average
+// over the two readings.
+void FitEquations::add_turning(int t) {
+  if (t < 1) return;
+  const auto now = static_cast<std::size_t>(t), last = now - 1;
+  const auto& rates = targets_[now].turning;
+  const auto& rates_before = targets_[last].turning;
+  if (rates.size() != rates_before.size()) return;  // a sensor fell silent
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    const int joint = rates[k].joint;
+    const auto j = static_cast<std::size_t>(joint);
+    const double measured =
+        0.5 * (rates[k].rate_radps + rates_before[k].rate_radps) * frame_time_s_;
+    const Mat3 turn =
+        seen_[now].pose.R_world_joint[j] * seen_[last].pose.R_world_joint[j].transpose();
+    const Vec3 turned = rotation_vector(turn);
+    const Eigen::VectorXd residual = Eigen::VectorXd::Constant(
+        1, frames_[now].yaw_rad - frames_[last].yaw_rad + turned.y() - measured);
+    const auto share = [&](int at, const Eigen::RowVector3d& slope, double factor) {
+      Eigen::MatrixXd jacobian = no_share(1);
+      if (!system_ || !is_free(at)) return Share{at, std::move(jacobian)};
+      const Eigen::Index turns = 3 * (skeleton_.num_joints() + joint);
+      jacobian.leftCols(num_angles_) =
+          slope * seen_[static_cast<std::size_t>(at)].jacobian.middleRows(turns, 3) /
+          (std::sqrt(2.0) * weights_.lever_m);
+      jacobian(0, num_angles_ + 3) = 1.0;
+      return Share{at, factor * jacobian};
+    };
+    const Mat3 slopes = rotation_vector_slopes(turned);
+    add_small(weights_.turning, residual,
+              {share(t, slopes.row(1), 1.0), share(t - 1, slopes.col(1).transpose(), -1.0)});
+  }
 }
 
 void FitEquations::add_small(double weight, const Eigen::VectorXd& residual,

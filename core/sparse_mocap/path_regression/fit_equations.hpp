@@ -40,12 +40,15 @@ class FitEquations {
   void add_pose_terms(int t);
   void add_inclination(int t);
   void add_root_terms(int t);
-  void add_contact(int t, int side);
+  double root_turn_weight(int t) const;
+  void add_foot(int t, std::size_t side);
+  void add_turning(int t);
   void add_points(double weight, int t, std::span<const double> factors,
                   const Eigen::VectorXd* target);
   void add_small(double weight, const Eigen::VectorXd& residual, std::vector<Share> shares);
   Eigen::VectorXd pulled(const Seen& seen, const Eigen::VectorXd& residual) const;
   Vec3 foot(int t, int ankle) const;
+  Share foot_share(int t, int ankle, double factor) const;
   bool is_free(int t) const { return t >= first_free_; }
   Eigen::MatrixXd no_share(Eigen::Index rows) const;
 

@@ -2,10 +2,13 @@
 #include "sparse_mocap/path_regression/frame_solver.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "sparse_mocap/path_regression/regression.hpp"
 #include "sparse_mocap/retrieval/diagnostics.hpp"
 #include "sparse_mocap/retrieval/root_motion.hpp"
+#include "sparse_mocap/retrieval/standing_feet.hpp"
+#include "sparse_mocap/sensors/sites.hpp"
 
 namespace sparse_mocap::path_regression {
 
@@ -24,6 +27,12 @@ std::vector<float> column_weights(const std::vector<Signal>& signals, const Conf
   return weights;
 }
 
+// How much the mean of poses counts that differ by spread_m, a joint: half at wide_spread_m.
+double agreement(const Eigen::VectorXd& spread_m, double wide_spread_m) {
+  const double mean_square = spread_m.squaredNorm() / static_cast<double>(spread_m.size());
+  return 1.0 / (1.0 + mean_square / (wide_spread_m * wide_spread_m));
+}
+
 }  // namespace
 
 FrameSolver::FrameSolver(const Config& config, const MethodContext& context)
@@ -36,7 +45,8 @@ FrameSolver::FrameSolver(const Config& config, const MethodContext& context)
       signal_rows_(database_signals(*database_, signals_)),
       index_(database_features(*database_, signal_rows_, features_, column_weights_),
              searched_frames(*database_, config.use_tempo_copies, context.excluded_clips)),
-      config_(config) {
+      config_(config),
+      usual_foot_heights_m_(usual_standing_heights_m(*database_)) {
   const int most_neighbours = static_cast<int>(Config::kNeighbourShare * index_.num_rows());
   config_.num_neighbours = std::min(config_.num_neighbours, std::max(most_neighbours, 1));
   config_.num_paths = std::min(config_.num_paths, std::max(config_.num_neighbours / 4, 1));
@@ -73,9 +83,12 @@ RetrievedFrame FrameSolver::retrieve(const std::vector<Path>& paths, const Signa
     frame.target.step = frame.target.points - mean_points(weighted.paths, weights, 1);
   }
   frame.target.inclination = inclination_target(database_->skeleton(), reading, signals_);
+  frame.target.turning = turning_targets(reading, signals_);
   frame.target.root = root_rates(*database_, weighted);
+  frame.target.feet = feet(weighted, window);
   frame.diagnostics = retrieval_diagnostics(*database_, weighted, signals_, signal_rows_,
                                             window.rows.row(window.at));
+  frame.target.agreement = agreement(frame.diagnostics.at("spread_m"), config_.wide_spread_m);
   return frame;
 }
 
@@ -95,6 +108,28 @@ Eigen::VectorXd FrameSolver::regressed(const WeightedPaths& weighted,
   Eigen::VectorXf query(dimensions);
   feature_at(window, regression_features_, column_weights_, {query.data(), size});
   return regression_weights(features, query, weighted.weights, config_.regression_ridge);
+}
+
+// The retrieved frames' vote, together with how still the shanks' own sensors are.
+StandingFeet FrameSolver::feet(const WeightedPaths& weighted, const SignalWindow& window) const {
+  StandingFeet feet = standing_feet(*database_, weighted, usual_foot_heights_m_);
+  const Eigen::Index before = std::max(window.at - 1, window.begin);
+  const Eigen::Index after = std::min(window.at + 1, window.end - 1);
+  const double span = static_cast<double>(std::max<Eigen::Index>(after - before, 1));
+  for (std::size_t s = 0; s < signals_.size(); ++s) {
+    if (signals_[s].channel != Channel::specific_force) continue;
+    const int carrier = all_sites()[static_cast<std::size_t>(signals_[s].site)].carrier;
+    for (const auto& [side, shank] :
+         {std::pair{0, standard_joint::ltibia}, std::pair{1, standard_joint::rtibia}}) {
+      if (carrier != shank) continue;
+      const auto column = static_cast<Eigen::Index>(3 * s);
+      const Eigen::RowVector3f change =
+          window.rows.row(after).segment<3>(column) - window.rows.row(before).segment<3>(column);
+      feet.certainty[side] =
+          standing_certainty(feet.certainty[side], static_cast<double>(change.norm()) / span);
+    }
+  }
+  return feet;
 }
 
 // The weighted mean of the points so many frames before the paths' ends, inside their clips.

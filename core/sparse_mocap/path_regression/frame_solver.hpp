@@ -43,6 +43,8 @@ class FrameSolver {
  private:
   Eigen::VectorXd regressed(const retrieval::WeightedPaths& weighted,
                             const retrieval::SignalWindow& window) const;
+  retrieval::StandingFeet feet(const retrieval::WeightedPaths& weighted,
+                               const retrieval::SignalWindow& window) const;
   Eigen::VectorXd mean_points(const std::vector<retrieval::Path>& paths,
                               const Eigen::VectorXd& weights, int frames_back) const;
 
@@ -54,6 +56,7 @@ class FrameSolver {
   retrieval::FeatureRows signal_rows_;  // of the database
   retrieval::KnnIndex index_;
   Config config_;
+  Eigen::Vector2d usual_foot_heights_m_;
 };
 
 }  // namespace sparse_mocap::path_regression

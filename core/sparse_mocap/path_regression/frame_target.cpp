@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/path_regression/frame_target.hpp"
 
+#include <cmath>
+
 #include "sparse_mocap/motion/standard_skeleton.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 
@@ -42,6 +44,20 @@ InclinationTarget inclination_target(const Skeleton& skeleton, const Reading& re
   target.rises_m =
       Eigen::Map<const Eigen::VectorXd>(rises_m.data(), static_cast<Eigen::Index>(rises_m.size()));
   return target;
+}
+
+std::vector<TurningTarget> turning_targets(const Reading& reading,
+                                           std::span<const retrieval::Signal> signals) {
+  std::vector<TurningTarget> targets;
+  for (const auto& signal : signals) {
+    if (signal.channel != Channel::gravity_direction) continue;
+    const Vec3 up = reading.gravity_direction.col(signal.sensor);
+    const double rate_radps = up.normalized().dot(reading.angular_velocity.col(signal.sensor));
+    if (std::isfinite(rate_radps))
+      targets.push_back(
+          {all_sites()[static_cast<std::size_t>(signal.site)].orientation, rate_radps});
+  }
+  return targets;
 }
 
 }  // namespace sparse_mocap::path_regression

@@ -9,6 +9,7 @@
 #include "sparse_mocap/readings/reading.hpp"
 #include "sparse_mocap/retrieval/root_motion.hpp"
 #include "sparse_mocap/retrieval/signals.hpp"
+#include "sparse_mocap/retrieval/standing_feet.hpp"
 
 namespace sparse_mocap::path_regression {
 
@@ -29,12 +30,25 @@ struct InclinationTarget {
 InclinationTarget inclination_target(const Skeleton& skeleton, const Reading& reading,
                                      std::span<const retrieval::Signal> signals);
 
+// How fast a joint turns about the vertical in the world.
+struct TurningTarget {
+  int joint = 0;
+  double rate_radps = 0.0;
+};
+
+// What gyroscopes say of the joints that they follow, for sensors that know which way is up too.
+std::vector<TurningTarget> turning_targets(const Reading& reading,
+                                           std::span<const retrieval::Signal> signals);
+
 // What retrieval and sensors say of one frame.
 struct FrameTarget {
   Eigen::VectorXd points;  // as pose_points: mean of the retrieved poses
+  double agreement = 1.0;  // of the retrieved poses: how much their mean counts, at most 1
   Eigen::VectorXd step;    // how the points move into this frame; empty: not known
   InclinationTarget inclination;
+  std::vector<TurningTarget> turning;  // in the order of the sensors, those that know it
   retrieval::RootRates root;
+  retrieval::StandingFeet feet;
 };
 
 }  // namespace sparse_mocap::path_regression

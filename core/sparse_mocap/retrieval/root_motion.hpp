@@ -21,29 +21,21 @@ struct RootRates {
 RootRates root_rates(const MotionDatabase& database, const WeightedPaths& weighted);
 
 // Follows the root through a performance that starts at the origin, facing forward.
-//
-// foot_lock (0 to 1) is how far a foot that stands for certain overrules the neighbours' mean
-// velocity: the root then moves so that the foot stays.
 class RootTracker {
  public:
-  RootTracker(double dt_s, double foot_lock) : dt_s_(dt_s), foot_lock_(foot_lock) {}
+  explicit RootTracker(double dt_s) : dt_s_(dt_s) {}
 
-  void reset() { *this = RootTracker(dt_s_, foot_lock_); }
-  // positions: the new pose's joint ends, heading frame, stacked.
-  void advance(const RootRates& rates, const Eigen::VectorXd& positions);
+  void reset() { *this = RootTracker(dt_s_); }
+  void advance(const RootRates& rates);
 
   const Vec3& position() const { return position_; }
   double yaw_rad() const { return yaw_rad_; }
 
  private:
-  Eigen::Vector2d standing_velocity(const RootRates& rates, const Eigen::VectorXd& positions,
-                                    double& certainty) const;
-
   double dt_s_;
-  double foot_lock_;
   Vec3 position_ = Vec3::Zero();
   double yaw_rad_ = 0.0;
-  Eigen::VectorXd positions_before_;
+  bool has_begun_ = false;
 };
 
 }  // namespace sparse_mocap::retrieval

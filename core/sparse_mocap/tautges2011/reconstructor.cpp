@@ -24,7 +24,7 @@ Reconstructor::Reconstructor(const Config& config, const MethodContext& context)
       energy_model_(make_energy_model(config_)),
       graph_(clips_of_frames(*database_),
              {config_.penalty, 1.0, config_.window_readings, config_.is_time_warping}),
-      root_(database_->frame_time_s(), 0.0) {}
+      root_(database_->frame_time_s()) {}
 
 std::optional<PoseEstimate> Reconstructor::step(const Reading& reading) {
   require_sensors(reading, num_sensors_);
@@ -79,7 +79,7 @@ PoseEstimate Reconstructor::remember(const Reading& reading, const Eigen::Vector
   JointTransforms pose;
   forward_kinematics(skeleton(), Vec3::Zero(), angles, pose);
   const Eigen::VectorXd positions = stacked_ends(pose);
-  root_.advance(rates, positions);
+  root_.advance(rates);
   past_ = Past{angles, positions, past_ ? past_->positions : positions,
                heading_accelerations(reading, pose, signals_)};
   return {reading.time_s,

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "sparse_mocap/motion/standard_skeleton.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 #include "support/synthetic.hpp"
@@ -60,6 +62,31 @@ TEST(InclinationTarget, IsMetInThePoseThatWasMeasured) {
     EXPECT_NEAR(target.rises_m[0], pose.end[lradius].y() - pose.end[lhumerus].y(), 1e-12);
     EXPECT_NEAR(target.rises_m[1], pose.end[rtibia].y() - pose.end[rfemur].y(), 1e-12);
   }
+}
+
+TEST(TurningTargets, AreTheTurnsAboutTheVertical) {
+  Random random(6);
+  const Channels inertial =
+      Channel::specific_force | Channel::gravity_direction | Channel::angular_velocity;
+  const std::vector<Sensor> sensors{{find_site("left_wrist"), 1.0, inertial},
+                                    {find_site("right_ankle"), 1.0, inertial}};
+  const auto signals = retrieval::compared_signals(sensors, true);
+  const Eigen::VectorXd angles = random.column(kNumStandardAngles, 0.6);
+  Reading reading(2);
+  for (Eigen::Index s = 0; s < 2; ++s) {
+    const Vec3 up = gravity_direction_at(angles, sensors[static_cast<std::size_t>(s)].site);
+    const Vec3 level = up.cross(random.vector(1.0));
+    reading.gravity_direction.col(s) = up;
+    reading.angular_velocity.col(s) = (1.5 + static_cast<double>(s)) * up + level;
+  }
+  const auto targets = turning_targets(reading, signals);
+  ASSERT_EQ(targets.size(), 2U);
+  EXPECT_EQ(targets[0].joint, lwrist);
+  EXPECT_NEAR(targets[0].rate_radps, 1.5, 1e-9);
+  EXPECT_EQ(targets[1].joint, rtibia);
+  EXPECT_NEAR(targets[1].rate_radps, 2.5, 1e-9);
+  reading.angular_velocity.col(0).setConstant(std::nan(""));
+  EXPECT_EQ(turning_targets(reading, signals).size(), 1U);
 }
 
 TEST(InclinationTarget, LeavesSilentSensorsOut) {

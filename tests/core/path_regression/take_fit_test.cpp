@@ -33,7 +33,12 @@ FitWeights all_weights() {
           .smoothness = 0.4,
           .inclination = 3.0,
           .contact = 20.0,
+          .stands_from = 0.0,
+          .stands_at = 1.0,
+          .foot_height = 8.0,
+          .turning = 1.5,
           .root_step = 2.0,
+          .root_turn = 0.9,
           .root_height = 4.0,
           .root_smoothness = 0.6};
 }
@@ -54,15 +59,22 @@ Take random_take(Random& random, std::size_t length, double apart) {
     FrameTarget target;
     target.points = pose_points(posed(pose), 0.15);
     target.step = random.column(target.points.size(), 0.02);
+    target.agreement = random.in(0.3, 1.0);
     target.inclination = {{lradius, rtibia}, random.column(2, 0.2)};
     target.root.velocity_mps = {random.in(-1.0, 1.0), random.in(-1.0, 1.0)};
     target.root.yaw_rate_radps = random.in(-1.0, 1.0);
     target.root.height_m = 0.9;
-    target.root.contacts = {random.in(0.0, 1.0), random.in(0.0, 1.0)};
+    target.turning = {{lwrist, random.in(-1.0, 1.0)}, {rtibia, random.in(-1.0, 1.0)}};
+    target.feet = {{random.in(0.0, 1.0), random.in(0.0, 1.0)},
+                   {random.vector(0.03), random.vector(0.03)},
+                   {0.1, -0.1}};
     take.targets.push_back(std::move(target));
   }
   return take;
 }
+
+// How much of a foot's certainty counts.
+double shown(double certainty) { return certainty * certainty * (3.0 - 2.0 * certainty); }
 
 // The terms written out one by one.
 double expected_value(const Take& take, const FitWeights& w, std::size_t first_free) {
@@ -80,7 +92,7 @@ double expected_value(const Take& take, const FitWeights& w, std::size_t first_f
   for (std::size_t t = first_free; t < take.frames.size(); ++t) {
     const FrameTarget& target = take.targets[t];
     const auto& yaw = [&](std::size_t at) { return take.frames[at].yaw_rad; };
-    sum += w.pose * (x[t] - target.points).squaredNorm();
+    sum += w.pose * target.agreement * (x[t] - target.points).squaredNorm();
     const JointTransforms pose = posed(take.frames[t].rotations);
     sum +=
         w.inclination *
@@ -88,16 +100,37 @@ double expected_value(const Take& take, const FitWeights& w, std::size_t first_f
     sum += w.inclination *
            std::pow(pose.end[rtibia].y() - pose.end[rfemur].y() - target.inclination.rises_m[1], 2);
     sum += w.root_height * std::pow(p[t].y() - target.root.height_m, 2);
+    for (std::size_t side = 0; side < 2; ++side) {
+      const auto row = static_cast<Eigen::Index>(side);
+      const double above = feet[t][side].y() - target.feet.height_m[row];
+      sum +=
+          w.foot_height * (above < 0.0 ? 1.0 : shown(target.feet.certainty[row])) * above * above;
+    }
     if (t < 1) continue;
     sum += w.step * (x[t] - x[t - 1] - target.step).squaredNorm();
     const Eigen::Vector2d v = target.root.velocity_mps * kDt;
     const Vec3 step = yaw_rotation(yaw(t - 1)) * Vec3(v.x(), 0.0, v.y());
     const Vec3 moved = p[t] - p[t - 1] - step;
     sum += w.root_step * (moved.x() * moved.x() + moved.z() * moved.z());
-    sum += w.root_step * std::pow(yaw(t) - yaw(t - 1) - target.root.yaw_rate_radps * kDt, 2);
-    for (std::size_t side = 0; side < 2; ++side)
-      sum += w.contact * std::pow(target.root.contacts[static_cast<Eigen::Index>(side)], 2) *
-             (feet[t][side] - feet[t - 1][side]).squaredNorm();
+    sum += 0.07 * w.root_turn * std::pow(yaw(t) - yaw(t - 1) - target.root.yaw_rate_radps * kDt, 2);
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Vec3 rolls = yaw_rotation(yaw(t - 1)) * target.feet.step_m[side];
+      sum += w.contact * shown(target.feet.certainty[static_cast<Eigen::Index>(side)]) *
+             (feet[t][side] - feet[t - 1][side] - rolls).squaredNorm();
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto joint = static_cast<std::size_t>(target.turning[k].joint);
+      const auto world = [&](std::size_t at) {
+        return Mat3(yaw_rotation(yaw(at)) * posed(take.frames[at].rotations).R_world_joint[joint]);
+      };
+      // The yaws are about the vertical, the rest of the turn is seen from the body.
+      const Eigen::AngleAxisd turn(Mat3(yaw_rotation(-yaw(t)) * world(t) *
+                                        world(t - 1).transpose() * yaw_rotation(yaw(t - 1))));
+      const double rate =
+          0.5 * (target.turning[k].rate_radps + take.targets[t - 1].turning[k].rate_radps);
+      sum += w.turning *
+             std::pow(yaw(t) - yaw(t - 1) + turn.angle() * turn.axis().y() - rate * kDt, 2);
+    }
     if (t < 2) continue;
     sum += w.smoothness * (x[t] - 2.0 * x[t - 1] + x[t - 2]).squaredNorm();
     sum += w.root_smoothness * (p[t] - 2.0 * p[t - 1] + p[t - 2]).squaredNorm();
@@ -190,6 +223,7 @@ TEST(TakeFit, FindsAPoseWithItsTwists) {
   FrameTarget target;
   target.points = pose_points(posed(pose), FitWeights().lever_m);
   target.root.height_m = 0.9;
+  target.feet.height_m.setConstant(-1.0);  // far below
   take.targets = {target};
   take.frames = {
       {turned(kSkeleton, pose, random.column(kNumStandardAngles, 0.4)), Vec3::Zero(), 0.0}};
@@ -209,6 +243,8 @@ TEST(TakeFit, KeepsAStandingFootInPlace) {
     FrameTarget target;
     target.points = pose_points(posed(pose), FitWeights().lever_m);
     target.root = {{0.0, 0.5}, 0.0, 0.9, {1.0, 0.0}};
+    target.feet.certainty = {1.0, 0.0};
+    target.feet.height_m.setConstant(-1.0);  // far below
     take.targets.push_back(target);
     take.frames.push_back(
         start_of(kSkeleton, kDt, target, take.frames.empty() ? nullptr : &take.frames.back()));
@@ -222,6 +258,42 @@ TEST(TakeFit, KeepsAStandingFootInPlace) {
   const FittedFrame &first = take.frames.front(), &last = take.frames.back();
   EXPECT_LT((foot(last, ltibia) - foot(first, ltibia)).norm(), 0.03);
   EXPECT_LT(last.root_position.z() - first.root_position.z(), 0.3);
+}
+
+// Everything is retrieved 10 cm too low, and the right foot stands.
+TEST(TakeFit, PutsFeetOnTheFloorAndNoneBelow) {
+  const auto pose = joint_rotations(kSkeleton, Eigen::VectorXd::Zero(kNumStandardAngles));
+  const double ankle_m = posed(pose).end[rtibia].y();
+  Take take;
+  FrameTarget target;
+  target.points = pose_points(posed(pose), FitWeights().lever_m);
+  target.root.height_m = -ankle_m;
+  target.feet = {{0.0, 1.0}, {Vec3::Zero(), Vec3::Zero()}, {0.1, 0.1}};
+  take.targets = {target};
+  take.frames = {start_of(kSkeleton, kDt, target, nullptr)};
+  TakeFit(kSkeleton, kDt, {}).fit(take.frames, take.targets, 0, 50);
+  const JointTransforms there = posed(take.frames[0].rotations);
+  for (const auto ankle : {ltibia, rtibia})
+    EXPECT_NEAR(take.frames[0].root_position.y() + there.end[ankle].y(), 0.1, 0.02);
+}
+
+// Retrieved motions do not turn, gyroscopes at trunk and limbs say that all does.
+TEST(TakeFit, TurnsAsGyroscopesSay) {
+  const auto pose = joint_rotations(kSkeleton, Eigen::VectorXd::Zero(kNumStandardAngles));
+  Take take;
+  for (int t = 0; t < 25; ++t) {
+    FrameTarget target;
+    target.points = pose_points(posed(pose), FitWeights().lever_m);
+    target.root.height_m = 0.9;
+    target.feet.height_m.setConstant(-1.0);
+    for (const int joint : {lwrist, rwrist, ltibia, rtibia}) target.turning.push_back({joint, 0.8});
+    take.targets.push_back(target);
+    take.frames.push_back(
+        start_of(kSkeleton, kDt, target, take.frames.empty() ? nullptr : &take.frames.back()));
+  }
+  TakeFit(kSkeleton, kDt, {}).fit(take.frames, take.targets, 0, 50);
+  const double turned_rad = take.frames.back().yaw_rad - take.frames.front().yaw_rad;
+  EXPECT_NEAR(turned_rad, 24 * kDt * 0.8, 0.2 * 24 * kDt * 0.8);
 }
 
 TEST(ToEstimate, TurnsThePoseToItsHeading) {

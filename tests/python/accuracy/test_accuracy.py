@@ -29,25 +29,32 @@ CM = 100.0
 STANDING_MPS = 0.15
 """A foot that moves no faster than this in truth stands."""
 
+DRIFT_FRAMES = 50  # two seconds
+
 ANKLES = ("left_ankle", "right_ankle")
 FIGURES = [  # sensors, quality, what is measured, how much it is, and by how much it may differ
-    ("wrists and ankles", "live", "error_cm", 3.083, 0.07),
-    ("wrists and ankles", "live", "lag_ms", 4.4, 3.0),
-    ("wrists and ankles", "live", "slide_cmps", 0.79, 0.3),
-    ("wrists and ankles", "live", "jerk_kmps3", 0.0669, 0.004),
-    ("wrists and ankles", "whole take", "error_cm", 2.778, 0.07),
-    ("wrists and ankles", "whole take", "lag_ms", -0.6, 2.0),
-    ("wrists and ankles", "whole take", "slide_cmps", 0.8, 0.3),
-    ("wrists and ankles", "whole take", "jerk_kmps3", 0.0523, 0.004),
-    ("wrists and ankles", "live", "wrist_turn_deg", 0.282, 0.03),
-    ("wrists and ankles", "whole take", "wrist_turn_deg", 0.243, 0.03),
-    ("with gyroscopes", "live", "error_cm", 2.775, 0.07),
-    ("with gyroscopes", "live", "hands_cm", 4.88, 0.15),
-    ("with gyroscopes", "live", "jerk_kmps3", 0.0649, 0.005),
-    ("with gyroscopes", "whole take", "error_cm", 2.566, 0.07),
-    ("with gyroscopes", "whole take", "hands_cm", 5.0, 0.15),
-    ("ankles", "live", "error_cm", 5.71, 0.15),
-    ("ankles", "whole take", "error_cm", 4.65, 0.15),
+    ("wrists and ankles", "live", "error_cm", 2.912, 0.07),
+    ("wrists and ankles", "live", "lag_ms", 5.9, 3.0),
+    ("wrists and ankles", "live", "slide_cmps", 1.15, 0.3),
+    ("wrists and ankles", "live", "jerk_kmps3", 0.0676, 0.004),
+    ("wrists and ankles", "whole take", "error_cm", 2.791, 0.07),
+    ("wrists and ankles", "whole take", "lag_ms", -0.3, 2.0),
+    ("wrists and ankles", "whole take", "slide_cmps", 1.35, 0.3),
+    ("wrists and ankles", "whole take", "jerk_kmps3", 0.0495, 0.004),
+    ("wrists and ankles", "live", "wrist_turn_deg", 0.289, 0.03),
+    ("wrists and ankles", "whole take", "wrist_turn_deg", 0.24, 0.03),
+    ("with gyroscopes", "live", "error_cm", 2.615, 0.07),
+    ("with gyroscopes", "live", "hands_cm", 4.78, 0.15),
+    ("with gyroscopes", "live", "jerk_kmps3", 0.0657, 0.005),
+    ("with gyroscopes", "whole take", "error_cm", 2.542, 0.07),
+    ("with gyroscopes", "whole take", "hands_cm", 4.91, 0.15),
+    ("with gyroscopes", "live", "heading_deg", 1.22, 0.3),
+    ("with gyroscopes", "whole take", "heading_deg", 0.91, 0.3),
+    ("wrists and ankles", "live", "sunk_cm", 0.0, 0.02),
+    ("wrists and ankles", "whole take", "sunk_cm", 0.0, 0.02),
+    ("wrists and ankles", "whole take", "root_cm", 6.5, 1.5),
+    ("ankles", "live", "error_cm", 5.7, 0.15),
+    ("ankles", "whole take", "error_cm", 4.83, 0.15),
 ]
 
 
@@ -166,7 +173,46 @@ def wrist_turn_deg(performed: Motion, estimate: Motion) -> float:
     return float(np.degrees(2.0 * np.arccos(np.minimum(cosine, 1.0))).mean())
 
 
+def heading_deg(performed: Motion, estimate: Motion) -> float:
+    """How far the heading has drifted after two seconds, mean over all beginnings."""
+    turned = [yaw[DRIFT_FRAMES:] - yaw[:-DRIFT_FRAMES] for yaw in map(yaws, (performed, estimate))]
+    return float(np.degrees(np.abs(turned[1] - turned[0])).mean())
+
+
+def root_cm(performed: Motion, estimate: Motion) -> float:
+    """How far the root's path differs in length after two seconds, mean over all beginnings."""
+    ways = []
+    for motion in (performed, estimate):
+        root = np.asarray(motion.joint_positions("world"))[:, 0][:, [0, 2]]
+        ways.append(np.linalg.norm(root[DRIFT_FRAMES:] - root[:-DRIFT_FRAMES], axis=1))
+    return CM * float(np.abs(ways[1] - ways[0]).mean())
+
+
+def sunk_cm(performed: Motion, estimate: Motion) -> float:
+    """Mean depth of the ankles below the lowest place that they ever have in truth."""
+    lowest = ankles(performed)[..., 1].min()
+    return CM * float(np.maximum(lowest - ankles(estimate)[..., 1], 0.0).mean())
+
+
+def yaws(motion: Motion) -> Floats:
+    """(T,) rad: where the axis of the hips points."""
+    names = motion.skeleton.names
+    ends = np.asarray(motion.joint_positions("world"))
+    axis = ends[:, names.index("lhipjoint")] - ends[:, names.index("rhipjoint")]
+    return np.asarray(np.unwrap(np.arctan2(-axis[:, 2], axis[:, 0])))
+
+
 MEASURES: dict[str, Callable[[Motion, Motion], float]] = {
     measure.__name__: measure
-    for measure in (error_cm, hands_cm, slide_cmps, lag_ms, jerk_kmps3, wrist_turn_deg)
+    for measure in (
+        error_cm,
+        hands_cm,
+        slide_cmps,
+        lag_ms,
+        jerk_kmps3,
+        wrist_turn_deg,
+        heading_deg,
+        root_cm,
+        sunk_cm,
+    )
 }

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sparse_mocap/retrieval/standing_feet.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sparse_mocap/database/clip_motion.hpp"
+#include "sparse_mocap/motion/heading.hpp"
+#include "support/synthetic.hpp"
+
+namespace sparse_mocap::retrieval {
+namespace {
+
+using namespace standard_joint;
+
+// A clip whose left foot stands in the first half, and whose right one always does.
+std::shared_ptr<const MotionDatabase> half_standing() {
+  DatabaseContent content = testing::content_of(
+      {testing::swaying_motion(testing::template_skeleton(), 1, 20, 25.0)}, 25.0);
+  for (int n = 0; n < 20; ++n) content.clip_rows[0].contacts.row(n) << (n < 10 ? 1.0F : 0.0F), 1.0F;
+  return testing::database_of(content);
+}
+
+WeightedPaths paths_to(const std::vector<int>& frames, const Eigen::VectorXd& weights) {
+  WeightedPaths weighted;
+  for (const int frame : frames) weighted.paths.push_back({frame, 1.0, 1, -1});
+  weighted.weights = weights;
+  return weighted;
+}
+
+TEST(StandingFeet, AreAVoteOfTheRetrievedFrames) {
+  const auto database = half_standing();
+  const auto feet = standing_feet(*database, paths_to({2, 4, 15}, Eigen::Vector3d(0.5, 0.2, 0.3)),
+                                  Eigen::Vector2d(0.08, 0.09));
+  EXPECT_NEAR(feet.certainty[0], 0.7, 1e-9);
+  EXPECT_NEAR(feet.certainty[1], 1.0, 1e-9);
+  const auto none = standing_feet(*database, paths_to({15}, Eigen::VectorXd::Ones(1)),
+                                  Eigen::Vector2d(0.08, 0.09));
+  EXPECT_EQ(none.certainty[0], 0.0);
+  EXPECT_EQ(none.height_m[0], 0.08);
+  EXPECT_EQ(none.step_m[0], Vec3::Zero());
+}
+
+// Steps and heights against the clip as a motion in the world, where ankles are simply looked at.
+TEST(StandingFeet, MoveAsTheAnklesOfTheClipDo) {
+  const auto database = half_standing();
+  const Motion motion = clip_motion(*database, 0);
+  const auto yaws = headings(motion);
+  for (const int frame : {1, 5, 9}) {
+    const auto feet = standing_feet(*database, paths_to({frame}, Eigen::VectorXd::Ones(1)),
+                                    Eigen::Vector2d::Zero());
+    const JointTransforms now = motion.transforms(frame), before = motion.transforms(frame - 1);
+    for (const auto& [side, ankle] : {std::pair{0, ltibia}, std::pair{1, rtibia}}) {
+      const Vec3 step = yaw_rotation(yaws[static_cast<std::size_t>(frame - 1)]).transpose() *
+                        (now.end[ankle] - before.end[ankle]);
+      EXPECT_LT((feet.step_m[static_cast<std::size_t>(side)] - step).norm(), 1e-4) << frame;
+      EXPECT_NEAR(feet.height_m[side], now.end[ankle].y(), 1e-5);
+    }
+  }
+}
+
+TEST(UsualStandingHeights, AreMeansOverTheFramesThatStand) {
+  const auto database = half_standing();
+  const Motion motion = clip_motion(*database, 0);
+  double left = 0.0, right = 0.0;
+  for (int t = 0; t < 20; ++t) {
+    const JointTransforms pose = motion.transforms(t);
+    if (t < 10) left += pose.end[ltibia].y() / 10.0;
+    right += pose.end[rtibia].y() / 20.0;
+  }
+  const Eigen::Vector2d found = usual_standing_heights_m(*database);
+  EXPECT_NEAR(found[0], left, 1e-5);
+  EXPECT_NEAR(found[1], right, 1e-5);
+}
+
+TEST(StandingCertainty, RisesWithTheVoteAndFallsAsTheShankMoves) {
+  for (const double vote : {0.0, 0.2, 0.5, 0.9, 1.0}) {
+    EXPECT_EQ(standing_certainty(vote, std::nan("")), vote);
+    EXPECT_GT(standing_certainty(vote, 0.1), standing_certainty(vote, 2.0));
+    EXPECT_GT(standing_certainty(vote, 2.0), standing_certainty(vote, 10.0));
+  }
+  EXPECT_GT(standing_certainty(1.0, 0.2), 0.9);
+  EXPECT_LT(standing_certainty(1.0, 10.0), 0.2);
+  EXPECT_LT(standing_certainty(0.0, 2.0), 0.2);
+  EXPECT_LT(standing_certainty(0.3, 1.0), standing_certainty(0.6, 1.0));
+}
+
+}  // namespace
+}  // namespace sparse_mocap::retrieval
