@@ -18,6 +18,7 @@ LEAD_S = 3.0
 """From the first sample to the first phase: no movement begins before its own phase is near."""
 
 _ROOT = Path(__file__).resolve().parents[2]
+_BINDINGS = str(_ROOT / "bindings")
 _MAKER = _ROOT / "tests" / "python" / "guided_body.py"
 
 
@@ -35,7 +36,7 @@ def planted(folder: Path) -> tuple[Path, np.ndarray]:
     python = os.environ.get("SPARSE_MOCAP_TEST_PYTHON") or shutil.which("python") or "python3"
     done = subprocess.run(
         [python, _MAKER, take, turns, *times],
-        env=os.environ | {"PYTHONPATH": str(_ROOT / "bindings")},
+        env=os.environ | {"PYTHONPATH": os.environ.get("SPARSE_MOCAP_TEST_PATH") or _BINDINGS},
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     if "No module named 'scipy'" in done.stderr:

@@ -86,15 +86,6 @@ def until(is_so: Callable[[], Any], timeout_s: float = 20.0) -> None:
         time.sleep(0.01)
 
 
-def is_alive(pid: int) -> bool:
-    """Whether the process is there."""
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    return True
-
-
 @cache
 def serial_folder() -> Path:
     """A folder from which pyserial can be imported, and now is; for Blenders without it.

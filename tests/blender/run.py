@@ -67,7 +67,11 @@ def _chosen_tests(words: list[str]) -> Iterator[tuple[str, str, Test]]:
 
 def _outcome(test: Test, support) -> str:
     try:
-        with tempfile.TemporaryDirectory() as folder, support.fresh_blender():
+        is_windows = sys.platform == "win32"  # where files that are still open cannot be removed
+        with (
+            tempfile.TemporaryDirectory(ignore_cleanup_errors=is_windows) as folder,
+            support.fresh_blender(),
+        ):
             if "tmp_path" in inspect.signature(test).parameters:
                 test(tmp_path=Path(folder))
             else:

@@ -33,6 +33,15 @@ def real_data() -> Path:
     return folder
 
 
+def no_such_file() -> str:
+    """What this system says of a file that is not there."""
+    try:
+        Path("no such file").stat()
+    except OSError as error:
+        return error.strerror
+    raise AssertionError
+
+
 @dataclass(frozen=True)
 class Library:
     """Files on disk that the tests read."""

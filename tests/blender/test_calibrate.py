@@ -20,6 +20,7 @@ from support import (
     evaluated_points,
     in_blenders_axes,
     library,
+    no_such_file,
     reconstruct,
     settings,
 )
@@ -106,7 +107,7 @@ def test_a_calibration_that_is_none_is_said_in_one_line(tmp_path):
     chosen = settings()
     chosen.database, chosen.take = str(library().database), str(library().take)
     (tmp_path / "bad.json").write_text("{}")
-    for path, words in (("missing.json", "No such file"), ("bad.json", "is not a calibration")):
+    for path, words in (("missing.json", no_such_file()), ("bad.json", "is not a calibration")):
         chosen.calibration = str(tmp_path / path)
         assert words in error_of(bpy.ops.sparse_mocap.reconstruct)
     assert not bpy.data.actions

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import bpy
-from support import addon, error_of, library, raised, settings
+from support import addon, error_of, library, no_such_file, raised, settings
 
 
 def test_builds_and_is_chosen(tmp_path):
@@ -71,7 +71,7 @@ def test_bad_databases_give_one_line(tmp_path):
     for bad in (b"", data[:100], data[:-1], data[:-200] + bytes(100) + data[-100:]):
         damaged.write_bytes(bad)
         assert "damaged.smdb" in opened(damaged)
-    assert "No such file" in opened(tmp_path / "missing.smdb")
+    assert no_such_file() in opened(tmp_path / "missing.smdb")
     assert "folder" in opened(tmp_path)
     assert "Choose a motion database" in opened("")
 

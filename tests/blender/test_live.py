@@ -11,7 +11,8 @@ import bpy
 import installed
 import numpy as np
 from connected import connected
-from live_support import emulated, is_alive, own_runtime, serial_folder, until
+from live_support import emulated, own_runtime, serial_folder, until
+from processes import is_alive
 from support import (
     Skipped,
     addon,

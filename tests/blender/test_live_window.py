@@ -7,7 +7,8 @@ import subprocess
 from pathlib import Path
 
 import bpy
-from live_support import emulated, is_alive, own_runtime, repeated, serial_folder, until
+from live_support import emulated, own_runtime, repeated, serial_folder, until
+from processes import is_alive
 from support import Skipped, library
 
 SCRIPT = Path(__file__).parent / "live_window_script.py"

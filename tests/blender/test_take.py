@@ -2,7 +2,7 @@
 import shutil
 
 import bpy
-from support import SITES, addon, error_of, library, settings, undo
+from support import SITES, addon, error_of, library, no_such_file, settings, undo
 
 
 def test_load_tells_what_is_in_it():
@@ -29,7 +29,7 @@ def test_bad_takes_give_one_line(tmp_path):
     assert "bad.csv:2" in loaded(bad)
     bad.write_bytes(b"\xff\xfe\0\0")
     assert "bad.csv" in loaded(bad)
-    assert "No such file" in loaded(tmp_path / "missing.csv")
+    assert no_such_file() in loaded(tmp_path / "missing.csv")
     assert "Choose a take" in loaded("")
     assert settings().take == ""
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 import json
 import os
 import random
-import resource
 import shutil
 import signal
 import subprocess
@@ -93,6 +92,7 @@ def test_what_a_killed_writer_left_is_removed(folders: Path) -> None:
 
 
 def test_a_full_disk_is_told_of_the_users_own_file(folders: Path) -> None:
+    resource = pytest.importorskip("resource", reason="needs a limit of the size of files")
     database = folders / "db.smdb"
     shutil.copy(folders / "start.smdb", database)
     before = database.read_bytes()

@@ -45,7 +45,8 @@ def test_a_write_replaces_and_keeps_permissions(tmp_path: Path) -> None:
     path.chmod(0o640)
     write_text(path, "new\n")
     assert path.read_bytes() == b"new\n"
-    assert path.stat().st_mode & 0o777 == 0o640
+    if os.name == "posix":
+        assert path.stat().st_mode & 0o777 == 0o640
     assert list(tmp_path.iterdir()) == [path]
 
 
@@ -90,7 +91,7 @@ def test_a_write_waits_while_the_file_is_read(
 
 
 def test_what_cannot_be_written_names_the_file_that_was_meant(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError, match=r"nowhere/file\.txt"):
+    with pytest.raises(FileNotFoundError, match=r"nowhere[/\\]+file\.txt"):
         write_text(tmp_path / "nowhere" / "file.txt", "")
     with pytest.raises(IsADirectoryError):
         write_text(tmp_path, "")

@@ -296,7 +296,7 @@ def _fetch(port: Any, inbox: SimpleQueue[_Item | Exception], is_over: threading.
     try:
         while not is_over.is_set():
             data = port.read(max(1, min(port.in_waiting, LONGEST_READ)))
-            # For sockets, in_waiting is 1 at most.
+            # rfc2217:// may know of one byte at a time.
             while data and len(data) < LONGEST_READ and (waiting := port.in_waiting):
                 data += port.read(min(waiting, LONGEST_READ - len(data)))
             if data:

@@ -15,6 +15,7 @@ import serial
 from serial.tools import list_ports
 
 from .errors import PortError
+from .tcp_port import TCP_SCHEME, TcpConnection
 from .udp_port import SCHEME, UdpPort
 
 __all__ = ["PortInfo", "available_ports", "device_at", "is_url", "open_port", "port_of"]
@@ -126,6 +127,8 @@ def open_port(port: str, baud: int) -> Any:
     try:
         if port.startswith(SCHEME):
             return UdpPort(port, READ_TIMEOUT_S)
+        if port.startswith(TCP_SCHEME):
+            return TcpConnection(port, READ_TIMEOUT_S)
         return serial.serial_for_url(
             port, baudrate=baud, timeout=READ_TIMEOUT_S, exclusive=True,
             write_timeout=None if port.startswith("rfc2217://") else 1.0,  # it knows none

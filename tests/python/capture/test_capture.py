@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from capture_support import DRIVER, OPTIONS, SITES, Play, some_take, until
+from processes import is_alive, kill
 from sparse_mocap import StreamEncoder
 from sparse_mocap.capture import (
     CaptureClient,
@@ -27,13 +28,6 @@ from sparse_mocap.capture import (
     start_capture,
 )
 from sparse_mocap.capture.session import session_path, sessions
-
-
-def is_running(pid: int) -> bool:
-    try:
-        return "Z" not in Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-    except OSError:
-        return False
 
 
 def config_for(port: str, **how: object) -> CaptureConfig:
@@ -89,9 +83,9 @@ def test_without_clients_and_recording_the_process_ends(play: Play, tmp_path: Pa
     client = start_capture(config, tmp_path / "c")
     pid = client.session.pid
     time.sleep(1.0)
-    assert is_running(pid)
+    assert is_alive(pid)
     client.close()
-    until(lambda: not is_running(pid))
+    until(lambda: not is_alive(pid))
     assert not session_path(pid).exists()
     assert sessions() == []
     assert not Path(f"/proc/{pid}").exists()  # no zombie either
@@ -114,7 +108,7 @@ def test_a_recording_goes_on_without_clients(play: Play, tmp_path: Path) -> None
         assert client.status()["recording"]["number"] == 0
         until(lambda: client.status()["samples"] == 900)
         client.stop_recording()
-    until(lambda: not is_running(session.pid))
+    until(lambda: not is_alive(session.pid))
     assert all(
         len(r.times_s) == 300 for r in recording_to_take(tmp_path / "c").take.sensors.values()
     )
@@ -132,11 +126,11 @@ def test_who_leaves_ends_only_what_nobody_else_needs(play: Play, tmp_path: Path)
     until(lambda: len(second.read()) > 0)
     second.stop_recording()
     assert not second.leave()
-    assert is_running(third.session.pid)
+    assert is_alive(third.session.pid)
     third.skip()
     until(lambda: len(third.read()) > 0)
     assert third.leave()
-    until(lambda: not is_running(third.session.pid))
+    until(lambda: not is_alive(third.session.pid))
     assert len(recording_to_take(tmp_path / "c").take.sensors) == 3
 
 
@@ -256,7 +250,7 @@ def test_a_killed_client_ends_no_recording(play: Play, tmp_path: Path) -> None:
         pid = int(consumer.stdout.readline())
         time.sleep(1.0)
         consumer.kill()
-    assert is_running(pid)
+    assert is_alive(pid)
     (session,) = sessions()
     with CaptureClient(session, 0) as client:
         until(lambda: client.status()["samples"] == 900)
@@ -270,8 +264,8 @@ def test_a_killed_capture_loses_nothing_that_it_had(play: Play, tmp_path: Path) 
     with start_capture(config, tmp_path / "c") as client:
         client.wait_for_samples(10.0)
         time.sleep(0.5)
-        os.kill(client.session.pid, signal.SIGKILL)
-        until(lambda: not is_running(client.session.pid))
+        kill(client.session.pid)
+        until(lambda: not is_alive(client.session.pid))
         live = client.read()
         with pytest.raises(
             CaptureError, match="save what it received with: sparse-mocap record --recover"
@@ -370,5 +364,5 @@ def test_a_capture_outlives_its_terminal(play: Play, tmp_path: Path) -> None:
         time.sleep(0.2)
         assert client.status()
         os.kill(pid, signal.SIGTERM)
-        until(lambda: not is_running(pid))
+        until(lambda: not is_alive(pid))
     assert not session_path(pid).exists()

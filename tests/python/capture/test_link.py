@@ -4,9 +4,7 @@
 from __future__ import annotations
 
 import os
-import termios
 import time
-import tty
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -18,6 +16,9 @@ from sparse_mocap.capture.config import LinkConfig
 from sparse_mocap.capture.errors import LogError, PortError
 from sparse_mocap.capture.link import Arrived, Link, State
 from sparse_mocap.capture.ports import PortInfo, open_port
+
+termios = pytest.importorskip("termios", reason="needs pseudo-terminals")
+tty = pytest.importorskip("tty", reason="needs pseudo-terminals")
 
 
 class Notes:

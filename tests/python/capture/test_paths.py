@@ -7,7 +7,6 @@ import os
 import select
 import socket
 import threading
-import tty
 from collections.abc import Iterator
 from contextlib import closing, suppress
 from pathlib import Path
@@ -22,6 +21,8 @@ from sparse_mocap.capture import CaptureConfig, LinkConfig, recording_to_take, s
 from sparse_mocap.capture.link import Arrived, Link, State
 from sparse_mocap.capture.ports import PortInfo, device_at, port_of
 from sparse_mocap.capture.sample_log import SampleLogReader
+
+tty = pytest.importorskip("tty", reason="needs pseudo-terminals")
 
 SCHEMES = ["socket", "rfc2217"]
 pytestmark = pytest.mark.filterwarnings("ignore:set(Daemon|Name).. is deprecated")  # pyserial's

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -16,6 +15,7 @@ import numpy as np
 import pytest
 from capture_support import DRIVER, some_take, until
 from click.testing import Result
+from processes import kill
 from sparse_mocap import Take, read_positions, read_take, write_take
 from sparse_mocap.capture.ports import PortInfo
 from sparse_mocap.capture.session import sessions
@@ -157,7 +157,7 @@ def test_what_a_killed_capture_left_is_recovered(
                  "--sites", ",".join(take.sites))  # fmt: skip
     process = start(*arguments)
     until(lambda: sessions() and (tmp_path / "own.capture" / "samples.bin").stat().st_size > 20_000)
-    os.kill(sessions()[0].pid, signal.SIGKILL)
+    kill(sessions()[0].pid)
     _, err = process.communicate(timeout=20)
     assert process.returncode == 1
     assert f"--recover {tmp_path / 'own.capture'}" in err
