@@ -9,7 +9,7 @@ ZIG=$(environment zig "$ZIG_REQUIREMENTS")
 PACKAGE_BUILD=$ROOT/build/package
 
 # The targets, named as Blender names platforms; each has its file in .dev/packaging/toolchains.
-TARGETS='linux-x64 macos-arm64'
+TARGETS='linux-x64 windows-x64 macos-arm64'
 THIS_TARGET=linux-x64
 MACOS_PACKAGES='lld-19'
 
@@ -47,6 +47,11 @@ test_release_files() {
   done
   echo "$passed passed, $failed failed"
   [ "$failed" -eq 0 ]
+  note_tested_modules
+}
+
+# Adds the suites that ran to the report of the release files.
+note_tested_modules() {
   printf %s "$passed_suites" | PYTHONPATH=$ROOT/.dev/packaging xargs -d '\n' \
     python -m release_files.tested "$ROOT/build/packages/report.json"
 }
@@ -71,15 +76,16 @@ unpack_wheel() {
 make_release_files() {
   case ${1:-} in
     --quick) targets=$THIS_TARGET && basics ;;
-    *) targets=$TARGETS && basics $MACOS_PACKAGES ;;
+    *) targets=$TARGETS && basics $MACOS_PACKAGES $WINDOWS_PACKAGES ;;
   esac
   locked "$CACHE/lock" need_zig
   locked "$CACHE/lock" need_headers
+  case $targets in *windows*) locked "$CACHE/lock" need_windows_pythons ;; esac
   locked "$ROOT/build/lock" build_and_pack $targets
 }
 
 build_and_pack() {
-  step 'Gather headers' gather_headers
+  step 'Gather headers' gather_headers "$@"
   for target in "$@"; do
     locked "$(ceres_of "$target").lock" need_ceres "$target"
     step "Build for $target" for_target "$target" build_modules "$target"
@@ -143,7 +149,7 @@ fetch_headers() {
   mv unpacked/usr/include "$headers"
 }
 
-# gather_headers: what compilers for other systems may see: the libraries that are headers alone, and
+# gather_headers TARGET...: what compilers for these may see: the libraries that are headers alone, and
 # those of each CPython, copied so that the rest of /usr/include stays out of sight.
 gather_headers() {
   prefix=$PACKAGE_BUILD/prefix
@@ -154,7 +160,7 @@ gather_headers() {
   write_cmake_package "$prefix" Eigen3 Eigen3::Eigen libeigen3-dev
   write_cmake_package "$prefix" nanoflann nanoflann::nanoflann libnanoflann-dev
   write_cmake_package "$prefix" nlohmann_json nlohmann_json::nlohmann_json nlohmann-json3-dev
-  for target in $TARGETS; do
+  for target in "$@"; do
     for version in $(pythons_of "$target"); do
       gather_python_headers "$target" "$version"
     done
@@ -167,12 +173,13 @@ python_headers() { echo "$PACKAGE_BUILD/python/$1-$2"; }
 # gather_python_headers TARGET VERSION: pyconfig.h describes the system; that of 64-bit Linux is true
 # of macOS in all that modules see, but for the names of BSD that macOS has as well.
 gather_python_headers() {
-  case $2 in
-    3.11) from=/usr/include ;; # this Debian's own
-    *) from=$CACHE/headers-$2 ;;
-  esac
   folder=$(python_headers "$1" "$2")
   mkdir -p "$folder"
+  case $1:$2 in
+    windows-*) cp -Rp "$(windows_headers "$2")/." "$folder" && return ;;
+    *:3.11) from=/usr/include ;; # this Debian's own
+    *) from=$CACHE/headers-$2 ;;
+  esac
   cp -RLp "$from/python$2/." "$folder"
   cp -Lp "$from/x86_64-linux-gnu/python$2/pyconfig.h" "$folder"
   case $1 in
@@ -206,11 +213,11 @@ EOF
 # for_target TARGET COMMAND...: COMMAND and the options that tell CMake to compile for TARGET.
 for_target() {
   toolchain=$ROOT/.dev/packaging/toolchains/$1.cmake
+  # zig, as ccache sees it, is a script that never changes.
+  [ "$1" = windows-x64 ] || export CCACHE_COMPILERCHECK="string:$ZIG_REQUIREMENTS"
   shift
   export SPARSE_MOCAP_ZIG="$ZIG/lib/python3.11/site-packages/ziglang/zig"
   export ZIG_GLOBAL_CACHE_DIR="$CACHE/zig-cache" ZIG_LOCAL_CACHE_DIR="$CACHE/zig-cache"
-  # The compiler that ccache sees is a script that never changes.
-  export CCACHE_COMPILERCHECK="string:$ZIG_REQUIREMENTS"
   "$@" -DCMAKE_TOOLCHAIN_FILE="$toolchain" -DSPARSE_MOCAP_PREFIX="$PACKAGE_BUILD/prefix"
 }
 
@@ -224,6 +231,7 @@ build_modules() {
     set -- "$@" -DSPARSE_MOCAP_HEADERS_$version="$(python_headers "$target" "$version")"
     wanted="$wanted _core_$version"
   done
+  [ "$target" != windows-x64 ] || set -- "$@" $(windows_python_options)
   cd "$ROOT"
   cmake --fresh --preset package -B "build/package-$target" "$@" \
     -DSPARSE_MOCAP_XXHASH_INCLUDE_DIR="$PACKAGE_BUILD/prefix/include" \

@@ -3,7 +3,7 @@
 #
 # Read by ./dev: the test suites, one line for each and what it printed if it fails.
 
-passed=0 failed=0 left_out=0
+passed=0 failed=0 skipped=0 left_out=0
 passed_suites='' # a line each: NAME=LOG
 PROCESSORS=$(nproc)
 
@@ -110,7 +110,7 @@ report_suite() {
   seconds=$1
   set -- $(counts "$suite_log")
   echo "$1 passed, $2 failed, $3 skipped, $seconds s"
-  passed=$((passed + $1)) failed=$((failed + $2)) left_out=$((left_out + $4))
+  passed=$((passed + $1)) failed=$((failed + $2)) skipped=$((skipped + $3)) left_out=$((left_out + $4))
   passed_suites="$passed_suites$suite_name=$suite_log
 "
   if [ "$suite_status" -ne 0 ] || [ "$1" -eq 0 ] || [ "$2" -ne 0 ]; then

@@ -238,7 +238,7 @@ def test_every_part_of_others_comes_with_its_licence(made: release.Release) -> N
     files = extension(made)
     listed = files["licences/README.txt"].decode()
     texts = {name for name in files if name.startswith("licences/")} - {"licences/README.txt"}
-    assert len(texts) == 8
+    assert len(texts) == 10
     for name in texts:
         assert name.removeprefix("licences/") in listed
         assert len(files[name]) > 500

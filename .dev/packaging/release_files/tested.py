@@ -21,7 +21,7 @@ def note_tests(report: dict[str, Any], logs: dict[str, str]) -> None:
     """
     modules = {(module["name"], module["sha256"]): module for module in report["modules"]}
     for module in report["modules"]:
-        module["tested_by"] = []
+        module.setdefault("tested_by", [])
     for suite, log in logs.items():
         found = LOADED.findall(log)
         if not found:
@@ -29,7 +29,8 @@ def note_tests(report: dict[str, Any], logs: dict[str, str]) -> None:
         for name, sha256 in found:
             if (name, sha256) not in modules:
                 raise PackagingError(f"{suite} ran on another {name} than is handed out")
-            modules[name, sha256]["tested_by"].append(suite)
+            suites = modules[name, sha256]["tested_by"]
+            suites += [suite] if suite not in suites else []
 
 
 def main() -> int:
