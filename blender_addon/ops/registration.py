@@ -7,7 +7,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..scene import live as live_scene
-from ..scene import prompt
+from ..scene import overlay, prompt
 from ..session import job
 from ..session import live as live_session
 from ..session.calibrating import calibrations
@@ -54,6 +54,7 @@ def _before_load(*_: object) -> None:
     job.cancel_current()
     live_scene.stop_ticking()
     prompt.hide()
+    overlay.hide()
     live_session.end()
 
 
@@ -94,6 +95,7 @@ def unregister() -> None:
     record.remove_shortcut()
     live_scene.stop_ticking()
     prompt.hide()
+    overlay.hide()
     _end_all()
     atexit.unregister(_end_all)
     bpy.app.handlers.save_post.remove(_after_save)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import bpy
+import gpu
 from bpy.types import Action, Context, FCurve, Header, Object, UILayout
 from bpy_extras import anim_utils
 
@@ -14,6 +15,8 @@ SLOT_NAME = "Sparse Mocap"  # always the same, so that takes can be swapped on a
 
 HAS_PROGRESS_BAR = "progress" in UILayout.bl_rna.functions
 HAS_FILE_HANDLERS = hasattr(bpy.types, "FileHandler")  # drag and drop of files
+
+_PLAIN_SHADER = "UNIFORM_COLOR"
 
 _DRAGS = ("TRANSFORM_OT_", "SCULPT_OT_", "PAINT_OT_", "GPENCIL_OT_", "GREASE_PENCIL_OT_")
 
@@ -144,6 +147,16 @@ def file_handler(name: str, label: str, operator: str, endings: str) -> type:
             "poll_drop": classmethod(poll_drop),
         },
     )
+
+
+def point_shader() -> Any:
+    """The bound shader that draws points of one colour."""
+    try:
+        shader = gpu.shader.from_builtin("POINT_UNIFORM_COLOR")
+    except ValueError:  # before 5.0
+        shader = gpu.shader.from_builtin(_PLAIN_SHADER)
+    shader.bind()
+    return shader
 
 
 def is_rendering() -> bool:

@@ -53,6 +53,20 @@ def kept(name: str) -> Performance | None:
     return _kept.get(name)
 
 
+def advice_for(match: str, *, is_guess: bool) -> str:
+    """What to do about a match that is not good; empty when it is."""
+    if is_guess:
+        return "The motion database has nothing like this take: add clips of such movements to it"
+    if match == "poor":
+        return (
+            "Poor match: calibrate the sensors, check where they are worn, "
+            "or add clips of such movements to the database"
+        )
+    if match == "fair":
+        return "Fair match: calibrating the sensors, or more clips of such movements, may help"
+    return ""
+
+
 def reconstruct_job(
     database_path: str,
     take_path: str,

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from bpy.types import Context, Panel, UILayout
 
+from ..scene import overlay
 from ..scene.armature import is_ours
 from ..scene.ghost import ghost_of
 from ..scene.performance import facts_of, performed_action
@@ -12,7 +13,7 @@ from ..scene.settings import SPARSEMOCAP_PG_settings, settings_of
 from ..session.bake import PLACING_AGAIN
 from ..session.core import missing_reason
 from ..session.methods import has_best_quality, preset_items
-from ..session.reconstruct import RECONSTRUCTING, kept
+from ..session.reconstruct import RECONSTRUCTING, advice_for, kept
 from . import text
 from .step import StepPanel, action_button, job_is_running
 
@@ -177,14 +178,15 @@ def _performed(layout: UILayout, context: Context) -> None:
         ("Match", facts.match),
     ]
     text.facts(layout, rows)
-    if facts.is_guess:
-        text.paragraph(
-            layout, context, "The motion database has nothing like this take", icon="ERROR"
-        )
+    advice = advice_for(facts.match, is_guess=facts.is_guess)
+    if advice:
+        text.paragraph(layout, context, advice, icon="ERROR" if facts.is_guess else "INFO")
     if job_is_running(PLACING_AGAIN):
         action_button(layout, "sparse_mocap.update_action", "NONE", PLACING_AGAIN, is_ready=True)
     elif kept(facts.take) is not None:
         layout.operator("sparse_mocap.update_action", icon="FILE_REFRESH")
+    is_shown = overlay.is_shown()
+    layout.operator("sparse_mocap.toggle_overlay", icon="HIDE_OFF", depress=is_shown)
     row = layout.row(align=True)
     if ghost_of(context, active) is None:
         row.operator("sparse_mocap.compare", icon="GHOST_ENABLED")
