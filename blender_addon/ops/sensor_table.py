@@ -13,6 +13,7 @@ from ..session.core import core
 from ..session.errors import InputError
 from ..session.live import answer_of
 from ..session.names import shown_site
+from ..session.port_scanner import port_scanner
 from .live import ANSWER_S, NowOperator, connected
 
 NOWHERE = "none"
@@ -86,6 +87,27 @@ class SPARSEMOCAP_OT_shake_to_find(NowOperator, Operator):
         return ""
 
 
+class SPARSEMOCAP_OT_driver_help(NowOperator, Operator):
+    """The options of a sensor protocol; the tooltip shows them."""
+
+    bl_idname = "sparse_mocap.driver_help"
+    bl_label = "Options of the Protocol"
+    bl_options = {"INTERNAL"}
+
+    driver: StringProperty(name="Sensor protocol", options={"SKIP_SAVE"})
+
+    @classmethod
+    def description(cls, context: Context, properties: Any) -> str:
+        """What the protocol is for, and its options."""
+        known = port_scanner.result.driver_help
+        return known.get(properties.driver, "Choose a protocol: its options are listed here")
+
+    def act(self, context: Context) -> str:
+        """Show them as a message too."""
+        known = port_scanner.result.driver_help
+        return known.get(self.driver, "Choose a protocol first")
+
+
 class SPARSEMOCAP_OT_add_port(NowOperator, Operator):
     """Add a port, for sensors that have one each."""
 
@@ -123,6 +145,7 @@ class SPARSEMOCAP_OT_remove_port(NowOperator, Operator):
 CLASSES = (
     SPARSEMOCAP_OT_set_site,
     SPARSEMOCAP_OT_shake_to_find,
+    SPARSEMOCAP_OT_driver_help,
     SPARSEMOCAP_OT_add_port,
     SPARSEMOCAP_OT_remove_port,
 )

@@ -29,6 +29,7 @@ MODULES = (
 CAPTURE_MODULES = (
     "sparse_mocap.capture.client",
     "sparse_mocap.capture.diagnosis",
+    "sparse_mocap.capture.driver_guide",
     "sparse_mocap.capture.drivers",
     "sparse_mocap.capture.ports",
     "sparse_mocap.capture.recording",

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import threading
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
-from .core import capture
+from .core import capture, core
 from .errors import one_line
 
 SCAN_INTERVAL_S = 10.0
@@ -43,6 +43,8 @@ class ScanResult:
 
     ports: tuple[Any, ...] = ()  # sparse_mocap.capture.PortInfo
     drivers: tuple[str, ...] = ()
+    driver_help: dict[str, str] = field(default_factory=dict)
+    """What each driver is for, and its options with their defaults; several lines."""
     captures: tuple[RunningCapture, ...] = ()
     error: str = ""
 
@@ -82,9 +84,11 @@ class PortScanner:
     def _scan(self) -> None:
         try:
             module = capture()
+            names = tuple(module.drivers.driver_names())
             self.result = ScanResult(
                 tuple(module.available_ports()),
-                tuple(module.drivers.driver_names()),
+                names,
+                {name: _help_of(module, name) for name in names},
                 tuple(_running(module, session) for session in module.CaptureClient.running()),
             )
         except Exception as error:  # shown in the panel
@@ -98,6 +102,13 @@ def _running(module: Any, session: Any) -> RunningCapture:
     except module.CaptureError:  # it has ended, or does not answer
         recording = None
     return RunningCapture(session, None if recording is None else float(recording["seconds"]))
+
+
+def _help_of(module: Any, driver: str) -> str:
+    options = core().driver_options(driver)
+    lines = [module.driver_guide.GUIDES[driver].devices]
+    lines += [f"{name}={default}: {what}" for name, (default, what) in options.items()]
+    return "\n".join(lines)
 
 
 port_scanner = PortScanner()

@@ -153,12 +153,18 @@ def _link(module: Any, port: Port) -> Any:
 
 
 def _options(text: str) -> dict[str, str]:
-    options = {}
+    """From "rate_hz=100, columns=time,ax,ay,az": a word without "=" belongs to the list before."""
+    options: dict[str, str] = {}
+    name = ""
     for word in _words(text):
-        name, equals, value = word.partition("=")
-        if not equals:
+        first, equals, value = word.partition("=")
+        if equals:
+            name = first.strip()
+            options[name] = value.strip()
+        elif name:
+            options[name] += f",{word}"
+        else:
             raise InputError(f'Option "{word}": write name=value, separated by commas')
-        options[name.strip()] = value.strip()
     return options
 
 

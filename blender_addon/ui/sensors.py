@@ -104,7 +104,9 @@ def _port(layout: UILayout, context: Context, port: Any, index: int) -> None:
     column = _split(box)
     column.prop(port, "driver", text="Protocol")  # the names are too long for a narrow sidebar
     column.prop(port, "baud")
-    column.prop(port, "driver_options")
+    row = column.row(align=True)
+    row.prop(port, "driver_options")
+    row.operator("sparse_mocap.driver_help", text="", icon="QUESTION").driver = port.driver
 
 
 def _split(layout: UILayout) -> UILayout:

@@ -199,6 +199,15 @@ def test_bad_choices_are_told_before_anything_starts(port, said, tmp_path):
     assert not (tmp_path / "takes").exists()
 
 
+def test_options_may_be_lists():
+    text = "rate_hz=100, columns=time,ax, ay,az,separator=tab"
+    assert sensors._options(text) == {
+        "rate_hz": "100", "columns": "time,ax,ay,az", "separator": "tab",
+    }  # fmt: skip
+    with pytest.raises(InputError, match="fast"):
+        sensors._options("fast, rate_hz=1")
+
+
 def test_one_session_at_a_time(port, tmp_path):
     _connected(port, tmp_path)
     with pytest.raises(InputError, match="Disconnect"):
