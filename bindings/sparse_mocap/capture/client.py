@@ -10,7 +10,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -93,13 +93,17 @@ class CaptureClient:
         """The number of the next sample to read."""
         return self._samples.position
 
-    def wait_for_samples(self, timeout_s: float) -> dict[str, Any]:
+    def wait_for_samples(
+        self, timeout_s: float, tell: Callable[[str], None] = lambda message: None
+    ) -> dict[str, Any]:
         """Waits until every link delivers samples, and returns the status.
 
-        It does not wait for long when only some links deliver: the others' messages say why. Raises
-        CaptureError with the reason of a link that failed, or when none delivers after the timeout.
+        tell: is called with each new message of a link that does not deliver yet. It does not wait
+        for long when only some links deliver: the others' messages say why. Raises CaptureError
+        with the reason of a link that failed, or when none delivers after the timeout.
         """
         begin = time.perf_counter()
+        told: set[str] = set()
         while True:
             status = self.status()
             links = status["links"]
@@ -117,6 +121,9 @@ class CaptureClient:
                 raise CaptureError(reason)
             if not waiting:
                 return status
+            for message in {one["message"] for one in waiting} - told - {""}:
+                told.add(message)
+                tell(message)
             time.sleep(0.05)
 
     def record(self, seconds: float | None = None) -> dict[str, Any]:

@@ -82,12 +82,13 @@ def why_odd_values(config: LinkConfig, name: str, size: float) -> str:
         what, unit = "raw counts", "raw"
     else:
         return ""
+    rounded = float(f"{size:.2g}")  # so that the message stays the same
     advice = (
         f"set the option acceleration_unit={unit}" if config.driver == "text_line"
         else "check the device's unit and range"
     )  # fmt: skip
     return (
-        f"{name} measures {size:.3g} m/s², and gravity alone is {_GRAVITY_MPS2}; its values look "
+        f"{name} measures {rounded:g} m/s², and gravity alone is {_GRAVITY_MPS2}; its values look "
         f"like {what}: {advice}"
     )
 

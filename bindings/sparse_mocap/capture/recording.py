@@ -175,7 +175,7 @@ def recording_to_take(
         tuple(gaps),
         tuple(track.identity for track in tracks.values()),
         where.conflicts,
-        where.unknown,
+        tuple(name for name in where.unknown if name in (site_of or {})),
         tuple(track.clock_rate for track in tracks.values()),
         sum(sensor.num_missing for sensor in decoder.sensors),
         round(begin_s * 1e9),

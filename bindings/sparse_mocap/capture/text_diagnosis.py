@@ -14,7 +14,7 @@ __all__ = ["is_text", "why_no_lines"]
 _SEPARATORS = {"comma": ",", "tab": "\t", "semicolon": ";", "space": " "}
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _COMMA_NUMBER = re.compile(r"[+-]?\d+,\d+")
-_LABELLED = re.compile(r"\s*([^\d\s=:,;+-][^=:,;]*?)\s*[=:]\s*([+-]?[\d.].*)")
+_LABELLED = re.compile(r"([A-Za-z][^\s=:,;]*)\s*[=:]\s*[+-]?[\d.]")
 _BEGINS_WITH_LABEL = re.compile(r"\s*([A-Za-z][^\s:=,;]*(?:[:=]|(?=[\t ])))\s*[+-]?[\d.]")
 _LEAST_COLUMNS = 3
 _LARGEST_IN_MPS2 = 400.0
@@ -72,8 +72,7 @@ def _why_decimal_commas(line: str) -> str:
 
 
 def _why_labels(line: str) -> str:
-    fields = re.split(r"[,;\t]+", line)
-    labels = [match[1] for field in fields if (match := _LABELLED.match(field))]
+    labels = [match[1] for match in _LABELLED.finditer(line)]
     if len(labels) >= _LEAST_COLUMNS:
         return (
             f"its numbers have labels such as {labels[0]!r}; print the numbers alone, separated by "

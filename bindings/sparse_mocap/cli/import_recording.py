@@ -9,6 +9,8 @@ import click
 
 from .. import site_names, write_take
 from ..imports import read_recording, recording_formats
+from ..take import devices_of
+from ..take_file import device_comment
 from .console import warn
 from .options import FilePath, SensorSite, check_ending
 
@@ -30,8 +32,10 @@ def import_recording(recording: Path, output: Path, sites: tuple[tuple[str, str]
     check_ending(output, ".csv")
     take = read_recording(recording, dict(sites))
     write_take(output, take)
+    named = {device_comment(*pair) for pair in devices_of(take).items()}
     for comment in take.comments:
-        click.echo(comment)
+        if comment not in named:
+            click.echo(comment)
     for name, record in take.sensors.items():
         click.echo(f"{name}: {len(record.times_s)} samples, {record.times_s[-1]:.2f} s")
     unnamed = [name for name in take.sensors if name not in site_names()]

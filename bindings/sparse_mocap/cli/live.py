@@ -134,7 +134,7 @@ def _leave(client: CaptureClient) -> None:
 
 def _status(client: CaptureClient) -> dict[str, Any]:
     """Waits for the sensors, and returns the status; says what keeps a sensor from being used."""
-    client.wait_for_samples(FIRST_SAMPLE_TIMEOUT_S)
+    client.wait_for_samples(FIRST_SAMPLE_TIMEOUT_S, lambda message: warn([message]))
     time.sleep(_MORE_SENSORS_S)
     client.skip()
     status = client.status()

@@ -7,6 +7,7 @@ import shutil
 import threading
 import time
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,7 @@ from .options import FilePath, check_ending
 
 __all__ = ["attached", "record"]
 
-FIRST_SAMPLE_TIMEOUT_S = 20.0
+FIRST_SAMPLE_TIMEOUT_S = 10.0
 _POLL_S = 0.1
 
 
@@ -73,12 +74,24 @@ def record(
     config = config_of(ports, drivers, baud, options, sites, site_of)
     client = _started(config, folder)
     try:
-        client.wait_for_samples(FIRST_SAMPLE_TIMEOUT_S)
+        client.wait_for_samples(FIRST_SAMPLE_TIMEOUT_S, lambda message: warn([message]))
     except BaseException:
-        client.stop()
-        shutil.rmtree(folder, ignore_errors=True)
+        _give_up(client, folder)
         raise
     _save(client, output, seconds, sites, site_of)
+
+
+def _give_up(client: CaptureClient, folder: Path) -> None:
+    """Ends a capture without samples; what arrived is kept: other options may read it."""
+    has_bytes = any(link["bytes"] for link in client.status()["links"])
+    client.stop()
+    if not has_bytes:
+        shutil.rmtree(folder, ignore_errors=True)
+        return
+    numbers = (folder.with_name(f"{folder.name}.{number}") for number in count(1))
+    kept = next(path for path in numbers if not path.exists())
+    folder.rename(kept)
+    warn([f"what arrived is kept in {kept}"])
 
 
 def _save(
@@ -165,7 +178,8 @@ def _write(output: Path, recorded: RecordedTake) -> None:
     take = recorded.take
     write_take(output, take)
     warn(recorded.warnings)
-    count = sum(len(record.times_s) for record in take.sensors.values())
+    num_samples = sum(len(record.times_s) for record in take.sensors.values())
     click.echo(
-        f"{output}: {len(take.sensors)} sensors, {count} samples, {take.end_s - take.begin_s:.1f} s"
+        f"{output}: {len(take.sensors)} sensors, {num_samples} samples, "
+        f"{take.end_s - take.begin_s:.1f} s"
     )

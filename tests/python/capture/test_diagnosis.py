@@ -64,6 +64,9 @@ WRONG: dict[str, tuple[LinkConfig, list[bytes], tuple[str, ...]]] = {
         LinkConfig(USB, "text_line"), lines("ax:0.1,ay:0.2,az:9.8,gx:0,gy:0,gz:0"),
         ("labels such as 'ax'", "numbers alone"),
     ),
+    "labels between blanks": (
+        LinkConfig(USB, "text_line"), lines("ax: 0.10 ay: 0.20 az: 9.81"), ("labels such as 'ax'",),
+    ),
     "one label": (
         LinkConfig(USB, "text_line", options={"separator": "tab"}),
         lines("a/g:\t1\t2\t16384\t0\t0\t0"), ("prefix=a/g:",),
