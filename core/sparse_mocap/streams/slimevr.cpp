@@ -118,7 +118,6 @@ void Parser::parse(ByteView bytes) {
 
 void Parser::restart() {
   scanner_.reset();
-  macs_.clear();
   for (auto& [mac, tracker] : trackers_) {
     tracker.last_number.reset();
     for (auto& [number, part] : tracker.parts) part.orientation.reset();
