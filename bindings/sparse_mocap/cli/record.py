@@ -91,7 +91,7 @@ def _give_up(client: CaptureClient, folder: Path) -> None:
     numbers = (folder.with_name(f"{folder.name}.{number}") for number in count(1))
     kept = next(path for path in numbers if not path.exists())
     folder.rename(kept)
-    warn([f"what arrived is kept in {kept}"])
+    warn([f"what arrived is in {kept}"])
 
 
 def _save(
