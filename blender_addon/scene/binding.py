@@ -121,7 +121,9 @@ def bind(context: Context, armature: Object, limbs: str = "FK") -> Target:
         tuple(_limb(armature, character, one, names, place) for one in made),
     )
     held = [names[number] for number in order if found[number].follows is None]
-    return Target(armature.name, character, rig, held)
+    others = [name for limb in picked.limbs for name in (limb.target, limb.pole)]
+    others += [path for paths in picked.ik_properties.values() for path in paths]
+    return Target(armature.name, character, rig, held, tuple(others))
 
 
 def _check_visible(context: Context, armature: Object) -> None:

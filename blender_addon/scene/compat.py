@@ -93,11 +93,14 @@ def curves_of(action: Action) -> list[FCurve]:
 
 
 def assign_action(obj: Object, action: Action) -> None:
-    """Assign the action to the object."""
+    """Assign the action to the object, with the slot of the action before if it has that one."""
     data = obj.animation_data or obj.animation_data_create()
+    before = getattr(data, "action_slot", None)
+    wanted = before.identifier if before is not None else ""
     data.action = action
     if hasattr(action, "slots") and action.slots:
-        data.action_slot = action.slots[0]
+        same = (slot for slot in action.slots if slot.identifier == wanted)
+        data.action_slot = next(same, action.slots[0])
 
 
 Playing = tuple[Any, Any, bool]

@@ -89,11 +89,11 @@ def _action_for(name: str, armature: Object, take: RigTake) -> tuple[Action, Cur
     """A new action, with the curves of the armature's own one that the take leaves alone."""
     data = armature.animation_data
     old = data.action if data is not None else None
-    properties = take.target.controls.properties
+    properties = {*take.target.controls.properties, *take.target.others}
     mapped = [control.name for control in take.target.controls.controls]
     keyed = {
         f'pose.bones["{bpy.utils.escape_identifier(name)}"]'
-        for name in (*take.target.bones, *mapped)
+        for name in (*take.target.bones, *mapped, *take.target.others)
     }
     if old is not None:
         action = old.copy()

@@ -22,6 +22,8 @@ class Target:
     controls: Controls
     held: list[str]
     """Bones that a constraint, a driver or a lock keeps from following."""
+    others: tuple[str, ...] = ()
+    """Bones and data paths of properties that another choice of limbs keys."""
     floor_m: float = 0.0
     """How high the floor is above the character's origin."""
 

@@ -36,13 +36,14 @@ def test_hands_and_feet_of_rigify_meet_the_solvers_by_its_ik():
     armature = rigs.rigify_rig()
     frames = range(1, 1 + solved().num_frames)
     found = {}
-    for limbs in ("FK", "LEGS", "IK"):
+    for limbs in ("IK", "LEGS", "FK"):  # nothing of one choice stays in the next one's action
         settings().limbs = limbs
         action = bake(armature, foot_lock=1.0)
         found[limbs] = _rigify_points(armature, frames)
         paths = {curve.data_path for curve in addon("scene.compat").curves_of(action)}
         assert ('pose.bones["foot_ik.L"].location' in paths) == (limbs != "FK")
         assert ('pose.bones["hand_fk.L"].rotation_quaternion' in paths) == (limbs != "IK")
+        assert ('pose.bones["thigh_parent.L"]["pole_vector"]' in paths) == (limbs != "FK")
     for limbs in ("LEGS", "IK"):
         apart = np.linalg.norm(found[limbs] - found["FK"], axis=-1)[:, 4:]
         print(
