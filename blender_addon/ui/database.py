@@ -11,6 +11,7 @@ from bpy.types import Context, Panel, UILayout
 from ..scene.settings import SPARSEMOCAP_PG_settings, settings_of
 from ..session.core import missing_reason
 from ..session.database import BUILDING, databases, default_output, last_build
+from ..session.free_motions import FREE_MOTIONS
 from . import text
 from .step import StepPanel, action_button, job_is_running, redraw_soon, tick
 
@@ -40,10 +41,21 @@ class SPARSEMOCAP_PT_database(StepPanel, Panel):
             text.paragraph(self.layout, context, hint, icon="INFO")
         _outcome(self.layout, context)
         _build_form(self.layout, context, settings, is_first=not settings.database)
+        if not settings.database:
+            _free_motions(self.layout, context)
 
     def draw_header_preset(self, context: Context) -> None:
         """A check mark when the step is done."""
         tick(self.layout, databases, bpy.path.abspath(settings_of(context.scene).database))
+
+
+def _free_motions(layout: UILayout, context: Context) -> None:
+    """Where motion files come from."""
+    box = layout.box()
+    box.label(text="Motion capture to download")
+    for found in FREE_MOTIONS:
+        box.operator("wm.url_open", text=found.name, icon="URL").url = found.url
+        text.paragraph(box, context, found.terms)
 
 
 def _build_form(
