@@ -13,7 +13,7 @@ from .calibrating import calibration_at
 from .core import capture, core
 from .database import databases
 from .errors import InputError, one_line
-from .job import Job, Progress
+from .job import Cancelled, Job, Progress
 from .live import ANSWER_WITHIN_S, LiveSession, answer_of, one_line_of
 from .methods import MethodChoice, has_best_quality
 from .new_files import free_path, stamp
@@ -127,6 +127,8 @@ def save_take_job(
                 progress=progress,
             )
             return SavedTake(path, warnings, placed(performance, placement, progress))
+        except (Cancelled, core().Cancelled):
+            return SavedTake(path, warnings, None, "cancelled")
         except Exception as error:  # the take is saved all the same
             return SavedTake(path, warnings, None, one_line(error))
 

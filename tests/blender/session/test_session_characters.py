@@ -3,15 +3,20 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import sparse_mocap
 from scipy.spatial.transform import Rotation
 
-from blender_addon.session import key_reduction
+from blender_addon.session import key_reduction, sensors
+from blender_addon.session.bake import Placement
 from blender_addon.session.character import Character, FootLock, RestBone
 from blender_addon.session.errors import InputError
 from blender_addon.session.live_poses import Pose
+from blender_addon.session.methods import MethodChoice
 from blender_addon.session.reconstruct import advice_for
 from blender_addon.session.retarget import on_scene_frames, quaternions_of, without_jumps
 from blender_addon.session.stage import Stage
@@ -162,3 +167,27 @@ def test_the_stage_recentres_turns_and_keeps_in_place():
 def test_advice_is_given_for_what_is_not_good():
     assert advice_for("good", is_guess=False) == ""
     assert advice_for("poor", is_guess=False) != advice_for("fair", is_guess=False)
+
+
+def test_a_recording_that_is_cancelled_is_saved_all_the_same(tmp_path, monkeypatch):
+    """Esc while the take is reconstructed: the file is there, and the word is cancelled."""
+
+    def cancelled(*_: object, **__: object) -> None:
+        raise sparse_mocap.Cancelled("Cancelled")
+
+    future: Future[tuple[object, int]] = Future()
+    future.set_result((tmp_path, 1))
+    session = SimpleNamespace(stop_recording=lambda: future, tell_saved=lambda _: None)
+    monkeypatch.setattr(sensors, "_save", lambda *_: (str(tmp_path / "take.csv"), ()))
+    monkeypatch.setattr(sensors, "reconstruct", cancelled)
+    monkeypatch.setattr(sensors.databases, "get", lambda _: None)
+    monkeypatch.setattr(sensors.takes, "get", lambda _: None)
+    placement = Placement(1.0, 24.0, is_on_frames=True)
+    choice = MethodChoice()
+    job = sensors.save_take_job(session, "some.smdb", "", tmp_path, choice, placement)
+    saved = job.run()
+    assert (saved.path, saved.placed, saved.reason) == (
+        str(tmp_path / "take.csv"),
+        None,
+        "cancelled",
+    )
