@@ -122,7 +122,10 @@ prepare_wine() {
 in_windows_python() {
   windows_version=$1
   shift
-  PYTHONPATH=$(windows_path "$windows_version") \
+  windows_python=Z:$(windows_python "$windows_version")/python.exe
+  SPARSE_MOCAP_TEST_PYTHON=$windows_python \
+    SPARSE_MOCAP_TEST_PATH=$(windows_path "$windows_version") \
+    PYTHONPATH=$(windows_path "$windows_version") \
     in_wine "$(windows_python "$windows_version")/python.exe" -X faulthandler "$@"
 }
 

@@ -4,16 +4,19 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-__all__ = ["replaced", "write_text"]
+__all__ = ["remove_folder", "replaced", "write_text"]
 
 _DENIED_FOR_S = 1.0
 """How long a replacement is tried again. Windows refuses to replace a file that somebody reads."""
+_OPEN_FOR_S = 5.0
+"""How long a folder is tried to be removed."""
 
 
 @contextmanager
@@ -47,6 +50,19 @@ def write_text(path: str | os.PathLike[str], text: str, *, is_private: bool = Fa
     """Writes UTF-8 text atomically, keeping the line ends in ``text``; is_private as above."""
     with replaced(path, is_private=is_private) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="")
+
+
+def remove_folder(path: str | os.PathLike[str]) -> None:
+    """Removes a folder with its content, or leaves what cannot be removed.
+
+    Windows removes no file that another process has open: one that ends gets some time for it.
+    """
+    end = time.perf_counter() + _OPEN_FOR_S
+    while True:
+        shutil.rmtree(path, ignore_errors=True)
+        if not os.path.lexists(path) or time.perf_counter() >= end:
+            return
+        time.sleep(0.02)
 
 
 def _replace(temporary: Path, target: Path, new_mode: int) -> None:

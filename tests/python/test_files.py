@@ -7,6 +7,7 @@ import csv
 import errno
 import gc
 import os
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ from sparse_mocap import (
     write_bvh,
     write_positions,
 )
-from sparse_mocap.files import replaced, write_text
+from sparse_mocap.files import remove_folder, replaced, write_text
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
@@ -135,6 +136,31 @@ def test_a_database_is_replaced_while_it_is_open(library: Path, tmp_path: Path) 
     gc.collect()
     assert len(MotionDatabase(path).clips) == num_clips - num_dropped
     assert [entry.name for entry in tmp_path.iterdir()] == ["library.smdb"]
+
+
+def test_a_folder_is_removed_once_nobody_has_a_file_of_it_open(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Windows refuses to remove a file that is open."""
+
+    def remove(path: Path, **options: bool) -> None:
+        calls.append(path)
+        if len(calls) > 3:
+            shutil_rmtree(path, **options)
+
+    shutil_rmtree, calls = shutil.rmtree, list[Path]()
+    monkeypatch.setattr(shutil, "rmtree", remove)
+    folder = tmp_path / "take.capture"
+    folder.mkdir()
+    (folder / "output.log").write_bytes(b"")
+    remove_folder(folder)
+    assert len(calls) == 4
+    assert list(tmp_path.iterdir()) == []
+    remove_folder(folder)
+    monkeypatch.setattr(shutil, "rmtree", lambda path, **options: None)
+    monkeypatch.setattr("sparse_mocap.files._OPEN_FOR_S", 0.05)
+    folder.mkdir()
+    remove_folder(folder)
 
 
 def test_positions_survive_a_file(tmp_path: Path) -> None:

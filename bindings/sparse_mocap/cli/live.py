@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import shutil
 import tempfile
 import time
 from contextlib import ExitStack
@@ -19,6 +18,7 @@ from .. import MotionDatabase
 from ..calibration_file import read_calibration
 from ..capture.client import CaptureClient, start_capture
 from ..capture.errors import CaptureError
+from ..files import remove_folder
 from .capture_options import capture_options, config_of, remember
 from .console import interrupted, warn
 from .live_session import LiveSession
@@ -116,7 +116,7 @@ def _own_capture(stack: ExitStack, config: Any) -> CaptureClient:
     try:
         client = start_capture(replace(config, is_temporary=True), folder)
     except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
+        remove_folder(folder)
         raise
     stack.callback(_leave, client)
     return client
@@ -129,7 +129,7 @@ def _leave(client: CaptureClient) -> None:
     except CaptureError:  # the capture was killed
         is_over = True
     if is_over:
-        shutil.rmtree(client.folder, ignore_errors=True)
+        remove_folder(client.folder)
 
 
 def _status(client: CaptureClient) -> dict[str, Any]:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import shutil
 import threading
 import time
 from dataclasses import replace
@@ -19,6 +18,7 @@ from ..capture.config import CaptureConfig
 from ..capture.errors import CaptureError
 from ..capture.recording import RecordedTake, recording_to_take
 from ..capture.session import sessions
+from ..files import remove_folder
 from .capture_options import capture_options, config_of, remember
 from .console import interrupted, status_line, warn
 from .options import FilePath, check_ending
@@ -64,7 +64,7 @@ def record(
     if recover is not None:
         _write(output, recording_to_take(recover, None, sites or (), site_of))
         if recover.absolute() == folder:
-            shutil.rmtree(folder)
+            remove_folder(folder)
         return
     if attach is not None:
         with attached(attach) as client:
@@ -86,7 +86,7 @@ def _give_up(client: CaptureClient, folder: Path) -> None:
     has_bytes = any(link["bytes"] for link in client.status()["links"])
     client.stop()
     if not has_bytes:
-        shutil.rmtree(folder, ignore_errors=True)
+        remove_folder(folder)
         return
     numbers = (folder.with_name(f"{folder.name}.{number}") for number in count(1))
     kept = next(path for path in numbers if not path.exists())

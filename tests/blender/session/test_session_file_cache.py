@@ -71,7 +71,9 @@ def test_peek_tells_what_is_wrong_in_one_line(file):
     file.write_text("")
     assert _settled(cache, file).error == f"{file}: is empty"
     os.remove(file)
-    assert "No such file" in _settled(cache, file).error
+    with pytest.raises(FileNotFoundError) as missing:
+        file.stat()
+    assert str(missing.value.strerror) in _settled(cache, file).error
 
 
 def test_a_file_peeked_at_meanwhile_is_not_overwritten_by_a_late_one(file, tmp_path):

@@ -280,6 +280,7 @@ def test_a_killed_capture_loses_nothing_that_it_had(play: Play, tmp_path: Path) 
     assert own == pytest.approx(sent[: len(own)], abs=0.02)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="needs pseudo-terminals")
 def test_unplugged_and_back_the_recording_goes_on_and_the_gap_is_told(
     play: Play, tmp_path: Path
 ) -> None:
@@ -335,6 +336,7 @@ def test_a_missing_port_is_told_at_once(tmp_path: Path) -> None:
         client.stop()
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="needs pseudo-terminals")
 def test_a_silent_device_is_told_after_the_timeout(play: Play, tmp_path: Path) -> None:
     master, slave = os.openpty()
     with CaptureClient.start(os.ttyname(slave), DRIVER, tmp_path / "c", options=OPTIONS) as client:
@@ -352,6 +354,7 @@ def test_a_used_folder_is_refused(tmp_path: Path) -> None:
         CaptureClient.start("loop://", DRIVER, tmp_path / "c", options=OPTIONS)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="needs pseudo-terminals")
 def test_a_capture_outlives_its_terminal(play: Play, tmp_path: Path) -> None:
     emulator = play(some_take(10.0))
     with CaptureClient.start(
