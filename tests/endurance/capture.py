@@ -23,8 +23,9 @@ takes from its return to its first sample.
 played again from the start. Measured: how long it takes from the return of the data until live
 readings are true, and how far the take's length is off the wall clock, at worst.
 
-`order`: four trackers over UDP start in each order, and one comes back from another address.
-Counted: takes in which a tracker is not on its limb.
+`order`: four trackers over UDP start in each order, and one comes back from another address; the
+same with four devices on USB adapters, one of which is replugged as another port. Counted: takes in
+which one is not on its limb.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ from sparse_mocap.capture import (
 )
 from sparse_mocap.capture.ports import open_port
 from sparse_mocap.capture.session import FOLDER_VARIABLE, runtime_folder, sessions
-from trackers_support import are_on_their_limbs
+from trackers_support import adapters_are_on_their_limbs, are_on_their_limbs
 
 DRIVER, NUM_SENSORS, RATE_HZ = "xsens_mt", 6, 200.0
 OPTIONS = {"output": "mtdata", "num_sensors": str(NUM_SENSORS), "rate_hz": f"{RATE_HZ:g}"}
@@ -275,8 +276,9 @@ def order(folder: Path, times: int) -> dict[str, Any]:
     wrong = 0
     orders = list(itertools.permutations(range(4)))
     for number, starts in enumerate(orders * times):
-        wrong += not are_on_their_limbs(folder / f"o{number}", starts)
-    return {"takes": len(orders) * times, "wrong": wrong}
+        wrong += not are_on_their_limbs(folder / f"udp{number}", starts)
+        wrong += not adapters_are_on_their_limbs(folder / f"usb{number}", starts)
+    return {"takes": 2 * len(orders) * times, "wrong": wrong}
 
 
 PROOFS = {

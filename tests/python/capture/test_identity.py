@@ -16,6 +16,7 @@ from sparse_mocap.capture.raw_log import RawLogWriter
 from sparse_mocap.capture.remembered_sites import remember_sites, remembered_sites, sites_path
 from sparse_mocap.capture.sample_log import SAMPLE
 from sparse_mocap.capture.shaking import ShakeFinder
+from trackers_support import adapters_are_on_their_limbs, are_on_their_limbs
 
 SITES = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
 MACS = [bytes([0x24, 0xE6, 0xA1, 0, 0, number]) for number in range(4)]
@@ -130,6 +131,13 @@ def test_sensors_on_ports_are_known_by_their_adapters_numbers(
     assert sorted(take.sites) == sorted(SITES)
     for number, site in enumerate(SITES):
         assert take.sensors[site].specific_force[:, 0] == pytest.approx(number + 1.0)
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2, 3), (3, 1, 0, 2)])
+def test_real_ports_and_sockets_do_the_same(tmp_path: Path, order: Sequence[int]) -> None:
+    """`./dev endure order` does so in every order."""
+    assert are_on_their_limbs(tmp_path / "udp", order)
+    assert adapters_are_on_their_limbs(tmp_path / "usb", order)
 
 
 def test_a_device_that_moved_to_another_port_is_the_same_sensor(tmp_path: Path) -> None:
