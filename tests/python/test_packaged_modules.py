@@ -52,6 +52,12 @@ def test_a_module_that_is_as_it_must_be_passes(modules: dict[str, bytes]) -> Non
         ("int other;\n", ["-nostdlib"], "it exports other, which must be PyInit__core alone"),
         (ENTRY % 1, ["-nostdlib", "-Wl,-rpath,/opt"], "it tells the loader where to look"),
         (
+            "int lost(void); int PyLong_Type(void);\n"
+            "int PyInit__core(void) { return lost() + PyLong_Type(); }\n",
+            ["-nostdlib"],
+            "it needs lost, which nothing it links has",
+        ),
+        (
             ENTRY % 1,
             ["-nostdlib", "-Wl,--no-as-needed", "-lstdc++"],
             r"it needs libstdc\+\+\.so\.6",

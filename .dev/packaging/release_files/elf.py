@@ -9,8 +9,10 @@ from .errors import PackagingError
 
 X86_64 = 62
 SYMBOLS, DYNAMIC, EXPORT_SYMBOLS, NEEDED_VERSIONS = 2, 6, 11, 0x6FFFFFFE
+SYMBOL_VERSIONS = 0x6FFFFFFF
 LIBRARY, LIBRARY_FOLDERS = 1, (15, 29)  # DT_NEEDED; DT_RPATH and DT_RUNPATH
-LOCAL = 0
+LOCAL, GLOBAL = 0, 1
+UNVERSIONED = (0, 1)
 
 
 @dataclass(frozen=True)
@@ -22,6 +24,8 @@ class Library:
     needed: tuple[str, ...]
     versions: tuple[str, ...]
     """The versions of symbols that it asks of others, such as ``GLIBC_2.14``."""
+    from_anywhere: tuple[str, ...]
+    """The symbols that any library of the process may provide."""
     names_folders: bool
     """Whether it tells the loader where to look for libraries."""
     stripped: bool
@@ -51,10 +55,13 @@ def _read(data: bytes) -> Library:
     needed: list[str] = []
     versions: list[str] = []
     names_folders = False
+    from_anywhere: list[str] = []
+    symbol_versions = next((one.data for one in sections if one.kind == SYMBOL_VERSIONS), b"")
     for section in sections:
         names = sections[section.link].data
         if section.kind == EXPORT_SYMBOLS:
             exported += _exported(section.data, names)
+            from_anywhere += _from_anywhere(section.data, names, symbol_versions)
         elif section.kind == NEEDED_VERSIONS:
             versions += _needed_versions(section, names)
         elif section.kind == DYNAMIC:
@@ -67,6 +74,7 @@ def _read(data: bytes) -> Library:
         exported=tuple(sorted(exported)),
         needed=tuple(needed),
         versions=tuple(sorted(set(versions))),
+        from_anywhere=tuple(sorted(from_anywhere)),
         names_folders=names_folders,
         stripped=not any(section.kind == SYMBOLS for section in sections),
     )
@@ -89,6 +97,15 @@ def _sections(data: bytes) -> list[_Section]:
 def _exported(symbols: bytes, names: bytes) -> Iterator[str]:
     for name, info, _, section, _, _ in struct.iter_unpack("<IBBHQQ", symbols):
         if section and info >> 4 != LOCAL:
+            yield _text(names, name)
+
+
+def _from_anywhere(symbols: bytes, names: bytes, versions: bytes) -> Iterator[str]:
+    """What is not in the library, must be somewhere, and is not of a version of a library."""
+    for index, symbol in enumerate(struct.iter_unpack("<IBBHQQ", symbols)):
+        name, info, _, section, _, _ = symbol
+        version = struct.unpack_from("<H", versions, 2 * index)[0] & 0x7FFF if versions else 0
+        if name and not section and info >> 4 == GLOBAL and version in UNVERSIONED:
             yield _text(names, name)
 
 

@@ -10,6 +10,9 @@ C_LIBRARIES = frozenset(
 )
 """What comes with every glibc; the last, its loader, gives each thread its own variables."""
 
+PYTHON_NAMES = ("Py", "_Py")
+"""How the names of CPython's functions begin."""
+
 
 def examine(data: bytes, python: str) -> Examined:
     """Check a module; PackagingError when it is none."""
@@ -30,6 +33,8 @@ def _faults(library: Library) -> list[str]:
     faults += export_faults(library.exported)
     if others := [name for name in library.needed if name not in C_LIBRARIES]:
         faults.append(f"it needs {listed(others)}, which other machines may not have")
+    if lost := [name for name in library.from_anywhere if not name.startswith(PYTHON_NAMES)]:
+        faults.append(f"it needs {listed(lost)}, which nothing it links has")
     if strange := [name for name in library.versions if not name.startswith("GLIBC_")]:
         faults.append(f"it needs {listed(strange)}, which is not of the C library")
     glibc = [name for name in library.versions if name.startswith("GLIBC_")]
