@@ -71,9 +71,9 @@ def impatience(monkeypatch: pytest.MonkeyPatch) -> None:
 def links() -> Iterator[Callable[..., tuple[Link, Notes]]]:
     made: list[Link] = []
 
-    def make(port: str, **how: Any) -> tuple[Link, Notes]:
+    def make(port: str, *, baud: int = 115200, **how: Any) -> tuple[Link, Notes]:
         notes = Notes()
-        link = Link(0, LinkConfig(port, "letters"), notes, **how)
+        link = Link(0, LinkConfig(port, "letters", baud), notes, **how)
         made.append(link)
         link.start()
         return link, notes
@@ -180,6 +180,56 @@ def test_the_device_is_followed_by_its_numbers(links: Links, device: Device) -> 
     device.plug_in()
     until(lambda: len(notes.connections) == 2)
     assert notes.connections[1] == device.name
+
+
+def test_another_device_at_the_port_is_not_taken_for_the_sensors(
+    links: Links, device: Device
+) -> None:
+    found = [PortInfo("?", "", 1, 2, "A")]
+    link, notes = links(
+        "/dev/ttyUSB0", device_of=lambda port: found[0], name_of=lambda asked, known: device.name
+    )
+    until(lambda: notes.connections)
+    device.unplug()
+    found[0] = PortInfo("?", "", 1, 2, "B")
+    device.plug_in()
+    until(lambda: "another device is plugged in there; plug A in again" in link.message)
+    assert len(notes.connections) == 1
+
+
+def test_a_port_that_only_its_name_would_tell_is_given_up(
+    links: Links, device: Device, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(link_module, "GIVE_UP_S", 0.4)
+    link, notes = links(str(device.path))
+    until(lambda: notes.connections)
+    device.unplug()
+    until(lambda: link.state is State.FAILED)
+    device.plug_in()
+
+
+def test_unknown_baud_rates_are_tried_in_turn(
+    links: Links, device: Device, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(link_module, "TRY_BAUD_S", 0.2)
+    bauds: list[int] = []
+
+    def opened(port: str, baud: int) -> Any:
+        bauds.append(baud)
+        return open_port(port, baud)
+
+    link, _ = links(str(device.path), baud=0, opener=opened)
+    until(lambda: len(bauds) == 3)
+    right = bauds[-1]
+
+    def streams() -> bool:
+        device.send(b"s" if link.baud == right else b"x")
+        return link.state is State.STREAMING
+
+    until(streams)
+    time.sleep(0.5)
+    assert (link.baud, bauds[-1]) == (right, right)
+    assert bauds[:3] == list(link_module.USUAL_BAUDS[:3])
 
 
 def test_silence_is_a_stall_and_then_another_try(links: Links, device: Device) -> None:

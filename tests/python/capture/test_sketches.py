@@ -6,12 +6,14 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from sparse_mocap import StreamParser
-from sparse_mocap.capture.driver_guide import sketch, sketch_names
+from click.testing import Result
+from sparse_mocap import StreamParser, driver_names, driver_options
+from sparse_mocap.capture.driver_guide import GUIDES, sketch, sketch_names
 
 ARDUINO = Path(__file__).resolve().parents[1] / "arduino"
 COUNT = 300
@@ -74,3 +76,20 @@ def test_the_lines_of_a_sketch_are_read_with_its_options(name: str, tmp_path: Pa
     if name == "bno055":
         assert parser.sensor_ids == ["24:6F:28:AA:BB:CC"]
         assert np.isfinite(got["orientation"]).all()
+
+
+def test_every_driver_is_explained_with_all_its_options(cli: Callable[..., Result]) -> None:
+    assert list(GUIDES) == driver_names()
+    overview = cli("drivers").output
+    for name in driver_names():
+        assert name in overview
+        shown = cli("drivers", name).output
+        assert GUIDES[name].example.split()[0] in shown
+        assert all(option in shown for option in driver_options(name))
+        words = GUIDES[name].example.split()
+        options = dict(
+            words[at + 1].split("=", 1) for at, word in enumerate(words) if word == "--option"
+        )
+        StreamParser(name, **options)
+    assert cli("drivers", "--sketch", "mpu6050").output == sketch("mpu6050")
+    assert cli("drivers", "abacus").exit_code == 2
