@@ -135,7 +135,7 @@ def test_a_folders_own_table_holds_for_its_files_alone(
     for_all = tmp_path / "all.csv"
     for_all.write_text("file,actor\ny,berta\n")
     labels, warnings = find_labels([Path("."), Path("../b")], metadata=for_all)
-    assert labels == {"../b/y.bvh": Labels(actor="berta")}
+    assert labels == {str(Path("../b/y.bvh")): Labels(actor="berta")}
     assert warnings == []
 
 
