@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import socket
+import sys
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,8 @@ from sparse_mocap.capture import ports
 from sparse_mocap.capture.errors import PortError
 from sparse_mocap.capture.ports import PortInfo, device_at, open_port, port_of
 from sparse_mocap.capture.udp_port import UdpPort
+
+posix = pytest.mark.skipif(sys.platform == "win32", reason="ports of POSIX")
 
 LEFT = PortInfo("/dev/ttyUSB0", "", 0x1A86, 0x7523, "A1", "QinHeng", "CH340", "1-1")
 RIGHT = PortInfo("/dev/ttyUSB1", "", 0x1A86, 0x7523, "B2", "QinHeng", "CH340", "1-2")
@@ -44,6 +47,7 @@ def test_another_device_is_not_taken_for_the_one_that_left() -> None:
     assert not BUILT_IN.is_same_device(BUILT_IN)
 
 
+@posix
 def test_urls_and_symbolic_links_are_opened_as_they_were_asked_for(tmp_path: Path) -> None:
     link = tmp_path / "wrist"
     link.symlink_to("/dev/ttyUSB0")
@@ -66,6 +70,7 @@ def test_a_missing_port_says_so(tmp_path: Path) -> None:
     assert "no such port; plug the device in" in refusal(str(tmp_path / "ttyUSB0"))
 
 
+@posix
 def test_a_busy_port_says_so() -> None:
     master, slave = os.openpty()
     name = os.ttyname(slave)
@@ -76,6 +81,7 @@ def test_a_busy_port_says_so() -> None:
     os.close(slave)
 
 
+@posix
 def test_what_is_no_port_says_so(tmp_path: Path) -> None:
     file = tmp_path / "file"
     file.write_text("")
@@ -89,6 +95,7 @@ def test_nobody_at_the_other_end_says_so() -> None:
     assert "protocol 'carrier-pigeon' not known" in refusal("carrier-pigeon://x")
 
 
+@posix
 def test_a_forbidden_port_names_the_group(monkeypatch: pytest.MonkeyPatch) -> None:
     def forbid(*_: object, **__: object) -> None:
         raise serial.SerialException(13, "could not open port /dev/ttyUSB0: [Errno 13] Permission")
