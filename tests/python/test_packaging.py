@@ -159,6 +159,7 @@ def test_each_cpython_has_a_wheel_with_its_module_alone(
         assert files[f"sparse_mocap/{name}"] == modules[name]
         assert f"Tag: {tag}-{tag}-manylinux_2_28_x86_64\n".encode() in files[f"{info}/WHEEL"]
         assert f"{info}/licenses/LICENSE" in files
+        assert "sparse_mocap/capture/sketches/mpu6050.ino" in files
         assert f"{info}/licenses/licences/Eigen.txt" in files
 
 

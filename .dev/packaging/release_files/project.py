@@ -36,7 +36,9 @@ def read_project(root: Path) -> Project:
         version=version,
         settings=settings["project"],
         manifest=(root / "blender_addon" / "blender_manifest.toml").read_text("utf-8"),
-        package=folder_files(root / "bindings" / "sparse_mocap", (".py", ".pyi", "py.typed")),
+        package=folder_files(
+            root / "bindings" / "sparse_mocap", (".py", ".pyi", ".ino", "py.typed")
+        ),
         addon=folder_files(root / "blender_addon", (".py",)),
         licences={
             "LICENSE": (root / "LICENSE").read_bytes(),

@@ -271,7 +271,7 @@ def test_a_killed_capture_loses_nothing_that_it_had(play: Play, tmp_path: Path) 
             CaptureError, match="save what it received with: sparse-mocap record --recover"
         ):
             client.status()
-    assert sessions() == []
+    until(lambda: sessions() == [])  # its other threads may take a moment to end
     take = recording_to_take(tmp_path / "c").take
     kept = sum(len(record.times_s) for record in take.sensors.values())
     assert kept >= len(live) > 100
