@@ -274,7 +274,8 @@ TEST(TakeFit, PutsFeetOnTheFloorAndNoneBelow) {
   TakeFit(kSkeleton, kDt, {}).fit(take.frames, take.targets, 0, 50);
   const JointTransforms there = posed(take.frames[0].rotations);
   for (const auto ankle : {ltibia, rtibia})
-    EXPECT_NEAR(take.frames[0].root_position.y() + there.end[ankle].y(), 0.1, 0.02);
+    EXPECT_NEAR(take.frames[0].root_position.y() + there.end[static_cast<std::size_t>(ankle)].y(),
+                0.1, 0.02);
 }
 
 // Retrieved motions do not turn, gyroscopes at trunk and limbs say that all does.

@@ -51,7 +51,8 @@ TEST(StandingFeet, MoveAsTheAnklesOfTheClipDo) {
     const auto feet = standing_feet(*database, paths_to({frame}, Eigen::VectorXd::Ones(1)),
                                     Eigen::Vector2d::Zero());
     const JointTransforms now = motion.transforms(frame), before = motion.transforms(frame - 1);
-    for (const auto& [side, ankle] : {std::pair{0, ltibia}, std::pair{1, rtibia}}) {
+    for (const auto& [side, ankle] :
+         {std::pair<Eigen::Index, std::size_t>{0, ltibia}, {1, rtibia}}) {
       const Vec3 step = yaw_rotation(yaws[static_cast<std::size_t>(frame - 1)]).transpose() *
                         (now.end[ankle] - before.end[ankle]);
       EXPECT_LT((feet.step_m[static_cast<std::size_t>(side)] - step).norm(), 1e-4) << frame;
