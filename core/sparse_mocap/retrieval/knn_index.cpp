@@ -6,14 +6,18 @@
 #include <cstdint>
 #include <limits>
 #include <nanoflann.hpp>
-#include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <utility>
+
+#include "sparse_mocap/retrieval/block_scan.hpp"
 
 namespace sparse_mocap::retrieval {
 namespace {
 
 constexpr std::size_t kLeafSize = 64;
+// With fewer dimensions than this a kd-tree keeps more rows out than blocks do.
+constexpr Eigen::Index kDimensionsOfBlocks = 7;
 
 // A squared distance and the row it belongs to; ordered so that ties have one answer.
 using Candidate = std::pair<float, std::uint32_t>;
@@ -30,6 +34,7 @@ class NearestSet {
     buffer_.reserve(4 * k);
   }
 
+  std::size_t num_wanted() const { return k_; }
   std::size_t size() const { return buffer_.size(); }
   bool empty() const { return buffer_.empty(); }
   bool full() const { return buffer_.size() >= k_; }
@@ -110,14 +115,19 @@ using NanoflannTree = nanoflann::KDTreeSingleIndexAdaptor<RowDistance, Points, -
 
 }  // namespace
 
-struct KnnIndex::Tree {
-  Tree(FeatureRows rows_of_features, const std::vector<bool>& is_searched)
+struct KnnIndex::Searched {
+  Searched(FeatureRows rows_of_features, const std::vector<bool>& is_searched)
       : features(std::move(rows_of_features)),
         rows(searched_rows(is_searched)),
-        points{features, rows},
-        tree(static_cast<int>(features.cols()), points,
-             nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)) {
-    tree.buildIndex();
+        points{features, rows} {
+    const auto dimensions = features.cols();
+    if (dimensions >= kDimensionsOfBlocks) {
+      blocks.emplace(features, rows);
+      return;
+    }
+    tree.emplace(static_cast<int>(dimensions), points,
+                 nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
+    tree->buildIndex();
   }
 
   std::vector<std::uint32_t> searched_rows(const std::vector<bool>& is_searched) const {
@@ -130,51 +140,64 @@ struct KnnIndex::Tree {
     return selected;
   }
 
-  // Silent dimensions change the metric, which the tree's cells know nothing of.
+  const float* row(std::uint32_t place) const {
+    return features.data() + rows[place] * features.cols();
+  }
+
+  void search(std::span<const float> query, NearestSet& nearest) const {
+    if (std::any_of(query.begin(), query.end(), [](float v) { return std::isnan(v); }))
+      return scan_known_dimensions(query, nearest);
+    if (tree) {
+      tree->findNeighbors(nearest, query.data(), {});
+      return;
+    }
+    static thread_local std::vector<std::uint32_t> places;
+    blocks->near_rows(query, nearest.num_wanted(), places);
+    for (const auto place : places)
+      nearest.addPoint(squared_distance(query.data(), row(place), query.size()), place);
+  }
+
+  // Silent dimensions change the metric, which neither cells nor boxes know of.
   void scan_known_dimensions(std::span<const float> query, NearestSet& nearest) const {
-    std::vector<std::size_t> known;
-    for (std::size_t d = 0; d < query.size(); ++d)
-      if (!std::isnan(query[d])) known.push_back(d);
+    const auto size = static_cast<Eigen::Index>(query.size());
+    const Eigen::Map<const Eigen::ArrayXf> asked(query.data(), size);
+    const Eigen::ArrayXf is_known = asked.isNaN().select(Eigen::ArrayXf::Zero(size), 1.0F);
+    const Eigen::ArrayXf known = asked.isNaN().select(Eigen::ArrayXf::Zero(size), asked);
     for (std::uint32_t i = 0; i < rows.size(); ++i) {
-      const float* row = features.data() + rows[i] * features.cols();
-      float sum = 0.0F;
-      for (const std::size_t d : known) sum += (query[d] - row[d]) * (query[d] - row[d]);
-      nearest.addPoint(sum, i);
+      const Eigen::Map<const Eigen::ArrayXf> values(row(i), size);
+      nearest.addPoint(((known - values) * is_known).square().sum(), i);
     }
   }
 
   FeatureRows features;
   std::vector<std::uint32_t> rows;
   Points points;
-  NanoflannTree tree;
+  std::optional<NanoflannTree> tree;  // either this
+  std::optional<BlockScan> blocks;    // or these
 };
 
 KnnIndex::KnnIndex(FeatureRows features, const std::vector<bool>& is_searched)
-    : tree_(std::make_unique<Tree>(std::move(features), is_searched)) {}
+    : searched_(std::make_unique<Searched>(std::move(features), is_searched)) {}
 KnnIndex::~KnnIndex() = default;
 KnnIndex::KnnIndex(KnnIndex&&) noexcept = default;
 KnnIndex& KnnIndex::operator=(KnnIndex&&) noexcept = default;
 
-int KnnIndex::num_rows() const { return static_cast<int>(tree_->rows.size()); }
-int KnnIndex::num_dimensions() const { return static_cast<int>(tree_->features.cols()); }
-const FeatureRows& KnnIndex::features() const { return tree_->features; }
+int KnnIndex::num_rows() const { return static_cast<int>(searched_->rows.size()); }
+int KnnIndex::num_dimensions() const { return static_cast<int>(searched_->features.cols()); }
+const FeatureRows& KnnIndex::features() const { return searched_->features; }
 
 void KnnIndex::search(std::span<const float> query, int k, std::vector<Neighbour>& out) const {
   if (k < 1 || static_cast<int>(query.size()) != num_dimensions())
     throw std::invalid_argument("KnnIndex: k must be positive and the query of the features' size");
   static thread_local std::vector<Candidate> buffer;
-  const auto count = std::min(static_cast<std::size_t>(k), tree_->rows.size());
+  const auto count = std::min(static_cast<std::size_t>(k), searched_->rows.size());
   NearestSet nearest(count, buffer);
-  if (std::any_of(query.begin(), query.end(), [](float v) { return std::isnan(v); })) {
-    tree_->scan_known_dimensions(query, nearest);
-  } else {
-    tree_->tree.findNeighbors(nearest, query.data(), {});
-  }
+  searched_->search(query, nearest);
   nearest.finish();
   out.clear();
   // Rows are listed in ascending order, so place and row number sort alike.
   for (const auto& [squared, place] : buffer)
-    out.push_back({std::sqrt(squared), static_cast<int>(tree_->rows[place])});
+    out.push_back({std::sqrt(squared), static_cast<int>(searched_->rows[place])});
 }
 
 }  // namespace sparse_mocap::retrieval

@@ -17,8 +17,9 @@ struct Neighbour {
   auto operator<=>(const Neighbour&) const = default;
 };
 
-// Exact K-nearest-neighbour search over feature rows (Tautges et al. 2011, section 3) by a kd-tree.
-// Immutable: any number of threads may search at once.
+// Exact K-nearest-neighbour search over feature rows (Tautges et al. 2011, section 3): by a kd-tree
+// in few dimensions, as the paper does, else by blocks (block_scan.hpp), whose answers are the
+// same. Immutable: any number of threads may search at once.
 class KnnIndex {
  public:
   // Searches only the rows for which is_searched is true (all when it is empty).
@@ -37,8 +38,8 @@ class KnnIndex {
   void search(std::span<const float> query, int k, std::vector<Neighbour>& out) const;
 
  private:
-  struct Tree;
-  std::unique_ptr<Tree> tree_;
+  struct Searched;
+  std::unique_ptr<Searched> searched_;
 };
 
 }  // namespace sparse_mocap::retrieval

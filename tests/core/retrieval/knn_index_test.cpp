@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <thread>
 
@@ -66,6 +67,24 @@ void expect_same(const KnnIndex& index, const std::vector<float>& query, int k,
   }
 }
 
+// As above where so many rows are that some are nearly as far as the next: those may change places.
+void expect_same_but_for_near_ties(const KnnIndex& index, const std::vector<float>& query, int k) {
+  const auto expected = brute_force(index.features(), query, k);
+  std::vector<Neighbour> found;
+  index.search(query, k, found);
+  ASSERT_EQ(found.size(), expected.size());
+  std::set<int> rows;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const auto row = index.features().row(found[i].row).cast<double>();
+    const Eigen::Map<const Eigen::RowVectorXf> asked(query.data(), row.size());
+    const double distance = (row - asked.cast<double>()).norm();
+    EXPECT_NEAR(found[i].distance, distance, 1e-6 * (1.0 + distance));
+    ASSERT_NEAR(found[i].distance, expected[i].distance, 2e-6F * (1.0F + expected[i].distance));
+    rows.insert(found[i].row);
+  }
+  EXPECT_EQ(rows.size(), found.size());
+}
+
 double smooth(Random& random) { return random.in(-20.0, 20.0) + random.in(0.0, 9.81); }
 double on_grid(Random& random) { return random.below(3); }
 
@@ -97,6 +116,39 @@ TEST(KnnIndex, FindsWhatBruteForceFinds) {
       expect_same(index, query, k, brute_force(rows, query, k));
     }
   }
+}
+
+// Readings wander: near rows follow one another, few directions carry most of the variation.
+FeatureRows wandering_rows(Random& random, Eigen::Index rows, Eigen::Index columns) {
+  const Eigen::MatrixXd mix = random.matrix(columns, 5, 1.0);
+  FeatureRows out(rows, columns);
+  Eigen::VectorXd now = random.column(5, 10.0);
+  for (Eigen::Index r = 0; r < rows; ++r) {
+    now = 0.95 * now + random.column(5, 4.0);
+    out.row(r) = (mix * now + random.column(columns, 0.5)).transpose().cast<float>();
+  }
+  return out;
+}
+
+TEST(KnnIndex, FindsWhatBruteForceFindsInReadingsThatWander) {
+  Random random(9);
+  for (const Eigen::Index columns : {6, 7, 12, 24, 48}) {
+    const KnnIndex index(wandering_rows(random, 20'000, columns));
+    const FeatureRows queries = wandering_rows(random, 20, columns);
+    for (const auto& row : queries.rowwise()) {
+      const std::vector<float> query(row.begin(), row.end());
+      for (const int k : {1, 256, 4096}) expect_same_but_for_near_ties(index, query, k);
+    }
+  }
+}
+
+TEST(KnnIndex, FindsAllWhereEverySixteenthRowIsNearer) {
+  Random random(10);
+  FeatureRows rows = random_rows(random, 8000, 12, smooth);
+  for (Eigen::Index r = 0; r < rows.rows(); r += 16) rows.row(r) *= 1e-3F;
+  const KnnIndex index(rows);
+  const std::vector<float> query(12, 0.0F);
+  for (const int k : {1, 400, 600, 4096}) expect_same(index, query, k, brute_force(rows, query, k));
 }
 
 TEST(KnnIndex, OrdersManyExactTiesByRow) {
