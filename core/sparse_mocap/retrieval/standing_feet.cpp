@@ -78,7 +78,7 @@ Eigen::Vector2d usual_standing_heights_m(const MotionDatabase& database) {
   return sum.cwiseQuotient(count.cwiseMax(1.0));
 }
 
-// A logistic regression on held-out HDM05 motions with simulated consumer sensors.
+// A logistic function; its coefficients are set by hand, on HDM05 motions with simulated sensors.
 double standing_certainty(double vote, double change_mps2) {
   if (std::isnan(change_mps2)) return vote;
   const double p = std::clamp(vote, 0.01, 0.99);
