@@ -124,7 +124,17 @@ TEST(MapSkeleton, GuessesTheUnitFromTheLegsAndSaysSo) {
     ASSERT_EQ(mapping.warnings.size(), 1U);
     EXPECT_TRUE(contains(mapping.warnings[0], "unit"));
   }
-  EXPECT_TRUE(contains(mapping_error(template_without({}, 1e-9)), "not a human body's"));
+}
+
+TEST(MapSkeleton, ScalesAFigureOfNoUsualUnitToUsualLegs) {
+  for (const double scale : {1e-3, 3e-4, 40.0}) {
+    const auto mapping = map_skeleton(template_without({}, scale));
+    EXPECT_NEAR(leg_length_m(mapping.bones), 0.85, 0.4) << scale;
+    ASSERT_EQ(mapping.warnings.size(), 1U);
+  }
+  const auto mapping = map_skeleton(template_without({}, 1e-9));
+  EXPECT_NEAR(leg_length_m(mapping.bones), 0.85, 1e-3);
+  EXPECT_TRUE(contains(mapping.warnings[0], "scaled to legs of"));
 }
 
 TEST(MapSkeleton, TellsATPoseFromAnAPose) {
