@@ -110,6 +110,9 @@ def test_the_shown_pose_is_the_cores(tmp_path):
 
 
 def test_a_recording_is_baked_beside_the_file_in_one_undo_step(tmp_path):
+    if not bpy.app.binary_path:
+        # BPY_context_member_get reads a freed dictionary when the operator's undo step is pushed.
+        raise Skipped("as a module Blender may crash when operators call others in an override")
     with connected(tmp_path) as session:
         live_armature = _go_live()
         name = live_armature.name
