@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .core import core
+from .retarget import quaternions_of
 
 Floats = NDArray[np.float64]
 
@@ -54,7 +55,7 @@ class SampledBones:
                 relative[:, bone] = np.swapaxes(turned[:, parent], -1, -2) @ turned[:, bone]
         skeleton = sparse_mocap.Skeleton(self.names, self.parents, pivots, tips @ _R_CORE_BLENDER.T)
         places = poses[:, 0, :3, 3] @ _R_CORE_BLENDER.T
-        return sparse_mocap.Motion(skeleton, 1.0 / rate_hz, places, _quaternions(relative))
+        return sparse_mocap.Motion(skeleton, 1.0 / rate_hz, places, quaternions_of(relative))
 
 
 def largest_tree(parents: list[int]) -> list[int]:
@@ -73,18 +74,3 @@ def _turns(matrices: Floats) -> Floats:
     across = np.cross(columns[..., 0], along)
     across /= np.linalg.norm(across, axis=-1, keepdims=True)
     return np.stack([np.cross(along, across), along, across], -1)
-
-
-def _quaternions(R: Floats) -> Floats:
-    """(..., 4) w x y z: of each the largest column of q q^T, which loses no digits."""
-    xx, yy, zz = R[..., 0, 0], R[..., 1, 1], R[..., 2, 2]
-    wx, wy, wz = (R[..., k, j] - R[..., j, k] for j, k in ((1, 2), (2, 0), (0, 1)))
-    xy, xz, yz = (R[..., j, k] + R[..., k, j] for j, k in ((0, 1), (0, 2), (1, 2)))
-    rows = (
-        (1 + xx + yy + zz, wx, wy, wz), (wx, 1 + xx - yy - zz, xy, xz),
-        (wy, xy, 1 - xx + yy - zz, yz), (wz, xz, yz, 1 - xx - yy + zz),
-    )  # fmt: skip
-    products = np.stack([np.stack(row, -1) for row in rows], -2)
-    largest = np.diagonal(products, axis1=-2, axis2=-1).argmax(-1)
-    best = np.take_along_axis(products, largest[..., None, None], -2)[..., 0, :]
-    return np.asarray(best / np.linalg.norm(best, axis=-1, keepdims=True))
