@@ -26,7 +26,7 @@ SOURCE = WORK / "source"
 BUILD = SOURCE / "build" / "release"  # placed as the sources' own build is, for ccache
 PACKED = WORK / "packed"
 COPIED = ("CMakeLists.txt", "CMakePresets.json", "bindings", "core")
-COPIED += ("tests/python", "tests/real_data.py", "tests/loaded_module.py")
+COPIED += ("tests/python", *(f"tests/{path.name}" for path in sorted(ROOT.glob("tests/*.py"))))
 TEST_TIMEOUT_S = 600.0
 
 
