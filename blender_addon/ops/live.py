@@ -180,11 +180,11 @@ class SPARSEMOCAP_OT_leave_live(NowOperator, Operator):
 
 
 class SPARSEMOCAP_OT_recentre(NowOperator, Operator):
-    """Let the live character stand at the origin."""
+    """Move the live character to the origin."""
 
     bl_idname = "sparse_mocap.recentre"
     bl_label = "Recentre"
-    bl_description = "Let the live character stand at the origin"
+    bl_description = "Move the live character to the origin"
     bl_options = {"INTERNAL"}
 
     def act(self, context: Context) -> str:
@@ -194,11 +194,13 @@ class SPARSEMOCAP_OT_recentre(NowOperator, Operator):
 
 
 class SPARSEMOCAP_OT_face_front(NowOperator, Operator):
-    """Let the live character face the front, at the origin."""
+    """Turn the live character to the front, at the origin."""
 
     bl_idname = "sparse_mocap.face_front"
     bl_label = "Face Front"
-    bl_description = "Let the live character face the front, at the origin: the heading drifts"
+    bl_description = (
+        "Turn the live character to the front, at the origin, when its heading has drifted"
+    )
     bl_options = {"INTERNAL"}
 
     def act(self, context: Context) -> str:

@@ -235,14 +235,14 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
     )
     fastest_foot_mps: FloatProperty(
         name="Fastest (m/s)",
-        description="A foot that is faster than this is not locked, in m/s",
+        description="Feet that move faster are not locked (m/s)",
         default=0.5,
         min=0.0,
         max=3.0,
     )
     highest_foot_m: FloatProperty(
         name="Highest (m)",
-        description="A foot that is higher above the floor than this is not locked, in m",
+        description="Feet that are higher above the floor are not locked (m)",
         default=0.06,
         min=0.0,
         max=0.5,

@@ -25,7 +25,7 @@ __all__ = ["merge"]
 )  # fmt: skip
 @click.option(
     "--largest-lag", type=click.FloatRange(0.01, 3600), default=60.0, show_default=True,
-    help="By how much the takes may begin apart, in s.",
+    help="How many seconds apart the takes may begin.",
 )  # fmt: skip
 @click.option(
     "--site", "site_of", type=SensorSite(), multiple=True,

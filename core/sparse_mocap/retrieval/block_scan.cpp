@@ -207,7 +207,8 @@ void BlockScan::near_rows(std::span<const float> query, std::size_t k,
     on_axes.turned[d] = static_cast<float>(turned[static_cast<Eigen::Index>(d)]);
   on_axes.rounding = static_cast<float>(kOfLength * (largest_norm_ + turned.norm()));
   float bound = sampled_bound(on_axes, k);
-  while (!scan(on_axes, k, bound, places))
+  // Without a finite bound, as for a query that is infinite, all rows are near.
+  while (!scan(on_axes, k, bound, places) && std::isfinite(bound))
     bound = bound > 0.0F ? 2.0F * bound : on_axes.at_most(0.0F) + 1e-30F;
 }
 

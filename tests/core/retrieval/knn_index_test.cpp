@@ -218,6 +218,16 @@ TEST(KnnIndex, FindsNeighboursOfAQueryFarAway) {
   for (std::size_t i = 0; i < 100; ++i) EXPECT_NEAR(found[i].distance, expected[i].distance, 1e-3F);
 }
 
+TEST(KnnIndex, AnswersAQueryThatIsInfinite) {
+  Random random(11);
+  const KnnIndex index(random_rows(random, 1000, 12, smooth));
+  std::vector<float> query(12, 0.0F);
+  query[5] = std::numeric_limits<float>::infinity();
+  std::vector<Neighbour> found;
+  index.search(query, 100, found);
+  EXPECT_LE(found.size(), 100U);
+}
+
 TEST(KnnIndex, AnswersSeveralThreadsAtOnce) {
   Random random(8);
   const FeatureRows rows = random_rows(random, 3000, 12, smooth);
