@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sparse_mocap import Cancelled, FormatError, MappingError, read_motion, to_standard
+from sparse_mocap.demo_motions import generate_library, generate_performance
 from sparse_mocap.evaluation import motion_files
 from sparse_mocap.table_errors import TableError
-
-from .generator import generate_library, generate_performance
 
 Progress = Callable[[int, int, str], object]
 

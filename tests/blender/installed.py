@@ -44,7 +44,6 @@ def prepare_paths() -> None:
         sys.path.insert(0, str(ROOT))
         sys.path.append(str(ROOT / "bindings"))  # unless PYTHONPATH names another one
         return
-    sys.path.append(str(_demo_alone()))
     if _FOLDERS[0] not in os.environ:
         if "bpy" in sys.modules:
             raise SystemExit(f"set {', '.join(_FOLDERS)}: Blender has read them already")
@@ -102,12 +101,6 @@ def unregister() -> None:
 def module(name: str = "") -> ModuleType:
     """A module of the add-on as it is registered now."""
     return importlib.import_module(f"{ADDON}.{name}" if name else ADDON)
-
-
-def _demo_alone() -> Path:
-    folder = _temporary("sparse_mocap_demo_")
-    shutil.copytree(ROOT / "bindings" / "sparse_mocap_demo", folder / "sparse_mocap_demo")
-    return folder
 
 
 def _temporary(prefix: str) -> Path:

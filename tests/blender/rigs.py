@@ -120,7 +120,7 @@ def standard_skeleton():
 def standard_motion_of_take():
     """The walk that the tests' take was simulated from, on the skeleton of their database."""
     import sparse_mocap
-    from sparse_mocap_demo.generator import generate_library
+    from sparse_mocap.demo_motions import generate_library
 
     with tempfile.TemporaryDirectory() as folder:
         walk = generate_library(Path(folder))[1]

@@ -55,7 +55,7 @@ class Library:
 @cache
 def library() -> Library:
     import sparse_mocap
-    from sparse_mocap_demo.generator import generate_library
+    from sparse_mocap.demo_motions import generate_library
 
     folder = Path(tempfile.mkdtemp(prefix="sparse_mocap_tests_"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)

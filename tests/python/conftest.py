@@ -17,7 +17,7 @@ from click.testing import CliRunner, Result
 from loaded_module import loaded_module
 from real_data import NOT_SET, real_data_folder
 from sparse_mocap.cli.app import app
-from sparse_mocap_demo.generator import generate_library, generate_performance
+from sparse_mocap.demo_motions import generate_library, generate_performance
 
 ACTORS = ("ada", "bruno")
 CLIPS = ("walk_01", "walk_02", "squat_01", "squat_02", "kickleft_01", "kickright_01")

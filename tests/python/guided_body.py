@@ -25,7 +25,7 @@ from sparse_mocap import (
     write_bvh,
     write_take,
 )
-from sparse_mocap_demo.generator.library import generate_performance
+from sparse_mocap.demo_motions.library import generate_performance
 
 Floats = NDArray[np.float64]
 Span = tuple[float, float]

@@ -65,10 +65,10 @@ def test_the_command_without_a_core_says_so_in_one_line() -> None:
     assert platform.python_version() in done.stderr
 
 
-def test_the_generator_of_the_demo_does_not_need_the_package() -> None:
+def test_demo_motions_do_not_need_the_core() -> None:
     done = run_python(
-        "import sys; sys.modules['sparse_mocap'] = None\n"
-        "from sparse_mocap_demo.generator import generate_library; print(generate_library.__name__)"
+        "import sys; sys.modules['sparse_mocap._core'] = None\n"
+        "from sparse_mocap.demo_motions import generate_library; print(generate_library.__name__)"
     )
     assert done.stdout.strip() == "generate_library", done.stderr
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import Windows
 from solve import main as solve
-from sparse_mocap_demo.generator import generate_library, generate_performance
+from sparse_mocap.demo_motions import generate_library, generate_performance
 
 HERE = Path(__file__).resolve().parent
 FARTHEST_M = 1e-9

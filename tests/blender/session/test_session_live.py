@@ -17,7 +17,7 @@ from live_support import DRIVER, OPTIONS, emulated, own_runtime, until
 from processes import is_alive, kill
 from sparse_mocap.capture import CaptureClient
 from sparse_mocap.capture.sample_log import SAMPLE
-from sparse_mocap_demo.generator import generate_library
+from sparse_mocap.demo_motions import generate_library
 
 from blender_addon.session import live, sensors
 from blender_addon.session.bake import Placement

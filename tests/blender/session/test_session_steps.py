@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 import sparse_mocap
-from sparse_mocap_demo.generator import generate_performance
+from sparse_mocap.demo_motions import generate_performance
 
 from blender_addon.session import database, reconstruct, take
 from blender_addon.session.errors import InputError

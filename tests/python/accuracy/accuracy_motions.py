@@ -8,15 +8,15 @@ from math import radians
 from pathlib import Path
 
 import numpy as np
-from sparse_mocap_demo.generator import exercises as ex
-from sparse_mocap_demo.generator import generate_library
-from sparse_mocap_demo.generator.body import Body
-from sparse_mocap_demo.generator.bvh_text import write_bvh
-from sparse_mocap_demo.generator.compose import alive, joined
-from sparse_mocap_demo.generator.controls import mirror
-from sparse_mocap_demo.generator.gait import perform, walk
-from sparse_mocap_demo.generator.solve import Pose, solve
-from sparse_mocap_demo.generator.style import Actor, Style
+from sparse_mocap.demo_motions import exercises as ex
+from sparse_mocap.demo_motions import generate_library
+from sparse_mocap.demo_motions.body import Body
+from sparse_mocap.demo_motions.bvh_text import write_bvh
+from sparse_mocap.demo_motions.compose import alive, joined
+from sparse_mocap.demo_motions.controls import mirror
+from sparse_mocap.demo_motions.gait import perform, walk
+from sparse_mocap.demo_motions.solve import Pose, solve
+from sparse_mocap.demo_motions.style import Actor, Style
 
 LIBRARY_ACTORS = ("ada", "emil")  # of tempos 1.00 and 0.93
 

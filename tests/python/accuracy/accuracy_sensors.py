@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation, RotationSpline
 from sparse_mocap import SensorRecord, Take
-from sparse_mocap_demo.generator.body import INDEX, PARENTS, Body
-from sparse_mocap_demo.generator.curves import FRAME_RATE
-from sparse_mocap_demo.generator.kinematics import forward
-from sparse_mocap_demo.generator.solve import Pose
+from sparse_mocap.demo_motions.body import INDEX, PARENTS, Body
+from sparse_mocap.demo_motions.curves import FRAME_RATE
+from sparse_mocap.demo_motions.kinematics import forward
+from sparse_mocap.demo_motions.solve import Pose
 
 Floats = NDArray[np.float64]
 

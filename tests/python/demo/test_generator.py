@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sparse_mocap_demo.generator import generate_library, generate_performance
+from sparse_mocap.demo_motions import generate_library, generate_performance
 
 RATE = 60.0
 ELBOW = np.array([0.0, -np.sqrt(0.75), 0.5])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parametric human motion, so that the demonstration needs no outside data.
+"""Parametric human motion, to try everything without outside data.
 
 Exercises and gaits are written as smooth *control curves* (pelvis, trunk, arms and ankles over
 time), posed by analytic inverse kinematics and stored as BVH text.  Lengths are centimetres,
