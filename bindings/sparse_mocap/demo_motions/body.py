@@ -9,6 +9,8 @@ import numpy as np
 
 from .curves import Array
 
+__all__ = ["Body"]
+
 _LEG = ("HipJoint", "UpLeg", "Leg", "Foot")
 _ARM = ("Shoulder", "Arm", "ForeArm", "Hand")
 _SPINE = ("LowerBack", "Spine", "Spine1", "Neck", "Neck1", "Head")

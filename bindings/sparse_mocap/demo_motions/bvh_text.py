@@ -12,6 +12,8 @@ from .curves import FRAME_RATE, Array
 from .kinematics import angles_zyx
 from .solve import Pose
 
+__all__ = ["write_bvh"]
+
 
 def write_bvh(path: Path, body: Body, pose: Pose) -> Path:
     """Write ``pose`` of the skeleton of ``body`` to ``path``."""

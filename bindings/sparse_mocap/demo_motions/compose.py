@@ -11,6 +11,8 @@ from .controls import ARM, FACING, HEAD, PLACE, SPINE, TILT, WIDTH, displaced, n
 from .curves import FRAME_RATE, Array, drift
 from .style import Actor
 
+__all__ = ["alive", "joined"]
+
 
 def joined(actor: Actor, parts: list[Array], overlap: float = 0.5) -> Array:
     """One motion made of exercises that each start and end standing at ease.

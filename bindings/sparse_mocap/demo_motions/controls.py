@@ -23,6 +23,8 @@ import numpy as np
 from .curves import Array
 from .style import Actor
 
+__all__ = ["cropped", "displaced", "half_stance", "mirror", "neutral", "set_back"]
+
 PLACE = slice(0, 3)
 FACING = 3
 TILT = slice(4, 7)

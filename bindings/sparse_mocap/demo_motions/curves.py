@@ -9,6 +9,19 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+__all__ = [
+    "Knot",
+    "cruise",
+    "drift",
+    "pulse",
+    "pulses",
+    "ramp",
+    "running_integral",
+    "smooth_cover",
+    "through",
+    "timeline",
+]
+
 Array = npt.NDArray[np.float64]
 
 FRAME_RATE = 60.0

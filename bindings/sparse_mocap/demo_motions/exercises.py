@@ -16,6 +16,18 @@ from .curves import Array, cruise, pulse, pulses, timeline
 from .feet import Step, Via, foot_curve, on_toes
 from .style import Actor
 
+__all__ = [
+    "arm_circles",
+    "arm_swings",
+    "hugs",
+    "idle",
+    "jacks",
+    "kick",
+    "reach_high",
+    "reach_low",
+    "squat",
+]
+
 LEAD = 0.3
 TAIL = 0.35
 

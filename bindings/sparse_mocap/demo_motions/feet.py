@@ -17,6 +17,8 @@ import numpy as np
 from .body import Body
 from .curves import Array, Knot, ramp, through
 
+__all__ = ["Planted", "Step", "Via", "foot_curve", "on_toes"]
+
 
 @dataclass(frozen=True)
 class Via:

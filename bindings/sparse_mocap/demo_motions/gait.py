@@ -31,6 +31,8 @@ from .curves import Array, cruise, pulse, ramp, running_integral, timeline
 from .feet import Step, foot_curve
 from .style import Actor
 
+__all__ = ["Course", "Gait", "jog", "perform", "turn_in_place", "walk"]
+
 LEAD = 0.45
 """Seconds of standing before the first foot leaves the floor."""
 

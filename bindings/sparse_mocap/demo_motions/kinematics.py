@@ -12,6 +12,19 @@ import numpy as np
 
 from .curves import Array
 
+__all__ = [
+    "about",
+    "about_x",
+    "about_y",
+    "about_z",
+    "angles_zyx",
+    "forward",
+    "from_vector",
+    "leg_to_ankle",
+    "mirrored",
+    "transpose",
+]
+
 
 def from_vector(vector: Array) -> Array:
     """Rotation about the direction of ``vector`` (..., 3) by its length."""

@@ -20,6 +20,8 @@ from .gait import jog, perform, turn_in_place, walk
 from .solve import solve
 from .style import CAST, GUEST, Actor
 
+__all__ = ["Clip", "generate_library", "generate_performance"]
+
 Progress = Callable[[int, int, str], None]
 """Called after each file with the number of files written, their total and the file's name."""
 

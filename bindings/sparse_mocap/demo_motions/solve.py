@@ -22,6 +22,8 @@ from .kinematics import (
     transpose,
 )
 
+__all__ = ["Pose", "solve"]
+
 ELBOW = (0.0, -sqrt(0.75), 0.5)
 """Axis of the left elbow in the rest frame; the right one is its mirror image."""
 

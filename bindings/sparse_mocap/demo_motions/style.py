@@ -8,6 +8,8 @@ from math import radians
 
 from .body import Body
 
+__all__ = ["Actor", "Style"]
+
 
 @dataclass(frozen=True)
 class Style:
