@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "ceres_least_squares.hpp"
 #include "sparse_mocap/retrieval/pose_minimizer.hpp"
 #include "support/synthetic.hpp"
 #include "tautges2011/ceres_minimizer.hpp"
@@ -21,27 +22,34 @@ using tautges2011::Energy;
 
 // Energies as a reconstruction by the paper's method meets them, with where each begins.
 struct Problem {
+  tautges2011::EnergyTerms terms;
+  Eigen::VectorXd weights;
   Energy energy;
   PoseSubspace subspace;
   Eigen::VectorXd start;
 };
 
-const std::vector<Problem>& problems() {
-  static const auto database = [] {
+const MotionDatabase& swaying_database() {
+  static const auto made = [] {
     std::vector<Motion> motions;
     for (unsigned seed = 0; seed < 20; ++seed)
       motions.push_back(testing::swaying_motion(testing::template_skeleton(), seed, 400, 50.0));
     return testing::database_of(motions);
   }();
+  return *made;
+}
+
+const std::vector<Problem>& problems() {
   static const auto made = [] {
+    const MotionDatabase& database = swaying_database();
     testing::Random random(1);
     std::vector<Problem> out;
     for (int i = 0; i < 32; ++i) {
-      const Neighbourhood found = testing::retrieved_neighbourhood(*database, random, 256);
+      const Neighbourhood found = testing::retrieved_neighbourhood(database, random, 256);
       const PoseSubspace subspace = retrieval::weighted_pca(found.angles, found.weights, 0.99);
       const Eigen::VectorXd start = 0.5 * (found.angles.col(0) + subspace.mean);
-      out.push_back({Energy(database->skeleton(), found.weights,
-                            testing::all_terms(*database, found, Config())),
+      const auto terms = testing::all_terms(database, found, Config());
+      out.push_back({terms, found.weights, Energy(database.skeleton(), found.weights, terms),
                      subspace, start});
     }
     return out;
@@ -73,7 +81,7 @@ void minimize_by_majorising(benchmark::State& state) {
 }
 BENCHMARK(minimize_by_majorising)->Unit(benchmark::kMillisecond);
 
-// The baseline: Ceres' L-BFGS with the same gradient.
+// The baselines: Ceres' L-BFGS with the same gradient, and its Levenberg-Marquardt.
 void minimize_by_ceres(benchmark::State& state) {
   double energy = 0.0;
   std::size_t i = 0;
@@ -84,6 +92,19 @@ void minimize_by_ceres(benchmark::State& state) {
   state.counters["energy"] = benchmark::Counter(energy, benchmark::Counter::kAvgIterations);
 }
 BENCHMARK(minimize_by_ceres)->Unit(benchmark::kMillisecond);
+
+void minimize_by_ceres_lm(benchmark::State& state) {
+  double energy = 0.0;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const Problem& problem = problems()[i++ % problems().size()];
+    energy +=
+        testing::least_squares_minimum(swaying_database().skeleton(), problem.weights,
+                                       problem.terms.kernels, problem.subspace, problem.start);
+  }
+  state.counters["energy"] = benchmark::Counter(energy, benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(minimize_by_ceres_lm)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace sparse_mocap

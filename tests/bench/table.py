@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Prints the results of the benchmarks: times, each beside its baseline, and what got slower.
+
+python tests/bench/table.py [--store] RESULTS.json...
+
+`--store` makes the results the ones that later runs are compared with (tests/bench/baseline.json).
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import statistics
+import sys
+from pathlib import Path
+from typing import Any
+
+STORED = Path(__file__).with_name("baseline.json")
+SLOWER = 1.25  # times as slow as stored, beside the median of all
+
+PAPER_MS = {
+    "paper_frame/index_build": 1390.0,
+    "paper_frame/search": 51.0,
+    "paper_frame/graph": 12.0,
+    "paper_frame/minimisation": 380.0,
+}
+"""Table III of Tautges et al. 2011: 600,000 frames, K = 4096, I = 256, one core."""
+
+BASELINES = (
+    (r"recorded_knn/(?:plain_scan|nanoflann|faiss_flat)/(.*)", r"recorded_knn/sparse_mocap/\1"),
+    (r"paper_frame/graph_made_anew/\d+", "paper_frame/graph"),
+    (r"paper_frame/minimisation_by_.*", "paper_frame/minimisation"),
+    (r"knn_search_by_nanoflann/(\d+)", r"knn_search/\1"),
+    (r"minimize_by_ceres.*", "minimize_by_majorising"),
+)
+"""Whose time is to be seen beside whose."""
+
+TO_MS = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}
+
+
+def time_ms(result: dict[str, Any]) -> float:
+    """Processor time of a call: the median where calls were timed one by one, else the mean."""
+    return float(result.get("p50_ms", result["cpu_time"] * TO_MS[result["time_unit"]]))
+
+
+def named(bench: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """The results by name, without what Google Benchmark adds to it."""
+    ends = r"/(iterations:\d+|process_time|real_time)"
+    return {re.sub(ends, "", r["name"]): r for r in bench["benchmarks"] if "cpu_time" in r}
+
+
+def print_times(results: dict[str, dict[str, Any]]) -> None:
+    print(f"{'ms':44}{'p50':>10}{'p99':>10}{'worst':>10}{'processor':>11}{'clock':>10}")
+    for name, result in results.items():
+        unit = TO_MS[result["time_unit"]]
+        shares = [result.get(key) for key in ("p50_ms", "p99_ms", "worst_ms")]
+        cells = "".join(f"{'-' if ms is None else format(ms, '.3f'):>10}" for ms in shares)
+        print(
+            f"{name:44}{cells}{result['cpu_time'] * unit:11.3f}{result['real_time'] * unit:10.3f}"
+        )
+
+
+def print_ratios(results: dict[str, dict[str, Any]]) -> None:
+    print("\nTimes as fast as the baseline (medians of processor time)")
+    for name, result in results.items():
+        for pattern, replacement in BASELINES:
+            ours = re.sub(pattern, replacement, name)
+            if re.fullmatch(pattern, name) and ours in results:
+                print(f"{ours:44}{name:44}{time_ms(result) / time_ms(results[ours]):8.2f}")
+    for name, paper in PAPER_MS.items():
+        if name in results:
+            print(f"{name:44}{'Table III of the paper':44}{paper / time_ms(results[name]):8.1f}")
+
+
+def slower(now: dict[str, float], stored: dict[str, float]) -> dict[str, float]:
+    """How many times as slow, for those that stand out: beside the median, so that a slower or a
+    busier machine is not taken for slower code."""
+    ratios = {name: now[name] / ms for name, ms in stored.items() if name in now}
+    if not ratios:
+        return {}
+    usual = statistics.median(ratios.values())
+    return {name: ratio / usual for name, ratio in ratios.items() if ratio > SLOWER * usual}
+
+
+def main(paths: list[Path], store: bool) -> None:
+    results: dict[str, dict[str, Any]] = {}
+    for path in paths:
+        text = path.read_text(encoding="utf-8")
+        results |= named(json.loads(text)) if text else {}  # empty: a filter left all out
+    print_times(results)
+    print_ratios(results)
+    now = {name: round(time_ms(result), 6) for name, result in results.items()}
+    if store:
+        STORED.write_text(json.dumps(now, indent=2) + "\n", encoding="utf-8")
+    stored = json.loads(STORED.read_text(encoding="utf-8")) if STORED.exists() else {}
+    found = slower(now, stored)
+    print("\nSlower than stored:" if found else "\nNothing is slower than stored.")
+    for name, ratio in sorted(found.items(), key=lambda pair: -pair[1]):
+        print(f"{name:44}{ratio:8.2f} times")
+    if not any(name.startswith("recorded_") for name in results):
+        print("Recorded motion was left out: set SPARSE_MOCAP_DATA (see .github/CONTRIBUTING.md)")
+
+
+if __name__ == "__main__":
+    main([Path(path) for path in sys.argv[1:] if path != "--store"], "--store" in sys.argv)
