@@ -72,7 +72,8 @@ def noisy(take: Take, model: NoiseModel, seed: int = 0) -> Take:
     """Returns the take as such sensors would have recorded it; reproducible by the seed."""
     if model == NoiseModel():
         return take
-    streams = np.random.default_rng(seed).spawn(len(take.sensors))
+    seeds = np.random.SeedSequence(seed).spawn(len(take.sensors))
+    streams = [np.random.default_rng(own) for own in seeds]
     sensors = {
         site: _noisy_record(record, model, rng)
         for (site, record), rng in zip(take.sensors.items(), streams, strict=True)

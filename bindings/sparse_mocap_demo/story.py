@@ -31,7 +31,7 @@ from sparse_mocap.evaluation.metrics import CM
 from sparse_mocap.plots import plot_errors_over_time
 from sparse_mocap.take import Take
 
-from .blender import find_blender, render
+from .blender import find_blender, make_example, render
 from .choice import Choice, generated, recorded
 from .sensors import record_emulated
 
@@ -148,8 +148,14 @@ def _show_in_blender(output: Path, named: Path | None) -> int:
         return 1
     _say("Blender file", scene.blend)
     _say("picture", scene.picture)
+    example = output / "example.blend"
+    fault = make_example(blender, example)
+    if fault:
+        click.echo(f"Left out example.blend: Blender {fault}", err=True)
+        return 1
+    _say("example of the add-on", example)
     return 0
 
 
 def _say(what: str, path: Path) -> None:
-    click.echo(f"  {what:<20} {path}")
+    click.echo(f"  {what:<22} {path}")

@@ -29,6 +29,7 @@ from . import (
     record,
     sensor_table,
     take,
+    try_it,
 )
 
 CLASSES = (
@@ -45,6 +46,7 @@ CLASSES = (
     *character.CLASSES,
     *bake.CLASSES,
     *record.CLASSES,
+    *try_it.CLASSES,
 )
 
 

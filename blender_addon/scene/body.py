@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A simple body of one capsule a bone, for previews of the add-on's own figure."""
+"""A simple body of one capsule a bone, for previews of the add-on's own figure and of Rigify's."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
 import numpy as np
-from bpy.types import Context, Material, Object
+from bpy.types import Bone, Context, Material, Object
 
 from ..session.errors import InputError
 from .axes import Floats
+from .control_bones import is_rigify
 
 # Radii of a bone's beginning and end, metres, on a figure of average height.
 _RADII = {
@@ -29,6 +32,18 @@ _RADII = {
     "wrist": (0.034, 0.030),
     "hand": (0.034, 0.022),
 }
+# Rigify's bones of the trunk from bottom to top; its limbs are named like those above.
+_RIGIFY_SPINE = {
+    "spine": (0.110, 0.105),
+    "spine.001": (0.105, 0.115),
+    "spine.002": (0.115, 0.130),
+    "spine.003": (0.130, 0.085),
+    "spine.004": (0.060, 0.055),
+    "spine.005": (0.055, 0.055),
+    "spine.006": (0.085, 0.095),
+}
+_RIGIFY_DEFORMS, _RIGIFY_HALF = "DEF-", ".001"  # the further half of a limb's bone
+_RIGIFY_WITHOUT_BODY = ("DEF-pelvis", "DEF-breast")
 _OTHER_RADII = (0.04, 0.035)
 _USUAL_LEG_M = 0.85
 
@@ -39,11 +54,10 @@ def new_body(context: Context, armature: Object, material: Material | None = Non
     faces: list[tuple[int, ...]] = []
     groups: dict[str, range] = {}
     scale = _size(armature)
-    for bone in armature.data.bones:
-        if bone.parent is None or bone.length == 0.0:
-            continue
+    for bone in _bones(armature):
         head, tail = np.array(bone.head_local), np.array(bone.tail_local)
-        points, quads = _capsule(head, tail, *(scale * radius for radius in _radii(bone.name)))
+        radii = _radii(bone.name, armature.data.bones)
+        points, quads = _capsule(head, tail, *(scale * radius for radius in radii))
         begin = sum(len(part) for part in vertices)
         faces += [tuple(index + begin for index in quad) for quad in quads]
         vertices.append(points)
@@ -66,17 +80,39 @@ def new_body(context: Context, armature: Object, material: Material | None = Non
     return body
 
 
+def _bones(armature: Object) -> list[Bone]:
+    """The bones that get a capsule."""
+    bones = armature.data.bones
+    if is_rigify(armature):
+        deforming = [bone for bone in bones if bone.name.startswith(_RIGIFY_DEFORMS)]
+        return [bone for bone in deforming if not bone.name.startswith(_RIGIFY_WITHOUT_BODY)]
+    return [bone for bone in bones if bone.parent is not None and bone.length > 0.0]
+
+
 def _size(armature: Object) -> float:
     """Units of the armature for a metre on a figure of average height."""
     bones = armature.data.bones
-    if "thigh.L" not in bones or "shin.L" not in bones:
-        return 1.0
-    return float(bones["thigh.L"].length + bones["shin.L"].length) / _USUAL_LEG_M
+    for prefix in ("", "ORG-"):
+        thigh, shin = bones.get(f"{prefix}thigh.L"), bones.get(f"{prefix}shin.L")
+        if thigh is not None and shin is not None:
+            return float(thigh.length + shin.length) / _USUAL_LEG_M
+    return 1.0
 
 
-def _radii(bone: str) -> tuple[float, float]:
+def _radii(name: str, bones: Any) -> tuple[float, float]:
     """The radii of a bone, the same on both sides."""
-    return _RADII.get(bone) or _RADII.get(bone.removesuffix(".L").removesuffix(".R"), _OTHER_RADII)
+    if not name.startswith(_RIGIFY_DEFORMS):
+        known = _RADII.get(name) or _RADII.get(name.removesuffix(".L").removesuffix(".R"))
+        return known or _OTHER_RADII
+    own = name.removeprefix(_RIGIFY_DEFORMS)
+    if own in _RIGIFY_SPINE:
+        return _RIGIFY_SPINE[own]
+    whole = own.removesuffix(_RIGIFY_HALF)
+    begin, end = _RADII.get(whole.removesuffix(".L").removesuffix(".R"), _OTHER_RADII)
+    middle = 0.5 * (begin + end)
+    if own != whole:
+        return middle, end
+    return (begin, middle) if f"{name}{_RIGIFY_HALF}" in bones else (begin, end)
 
 
 def _capsule(

@@ -87,6 +87,12 @@ def capture() -> ModuleType:
         ) from error
 
 
+def demo_motions() -> ModuleType:
+    """The package's generator of movements; raises InputError when it cannot be used."""
+    core()
+    return _imported_all(("sparse_mocap.demo_motions",))
+
+
 def searched_folders() -> list[Path]:
     """The folders in which the package that belongs to this add-on may be."""
     is_extension = __name__.startswith("bl_ext.")

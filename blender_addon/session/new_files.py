@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 TAKES = "takes"
+STARTER_SET = "demo movements.smdb"
 
 
 def takes_folder(blend_path: str, folder: str = "") -> Path:
@@ -16,7 +17,19 @@ def takes_folder(blend_path: str, folder: str = "") -> Path:
     """
     if blend_path:
         return Path(blend_path).parent / TAKES
-    return Path(folder) if folder else Path.home() / "Sparse Mocap" / TAKES
+    return Path(folder) if folder else _home() / TAKES
+
+
+def starter_set(folder: str = "") -> Path:
+    """The motion database of generated movements, in the given folder.
+
+    folder: empty for the one in the home folder.
+    """
+    return (Path(folder) if folder else _home()) / STARTER_SET
+
+
+def _home() -> Path:
+    return Path.home() / "Sparse Mocap"
 
 
 def stamp() -> str:

@@ -11,6 +11,7 @@ from bpy.types import Context, Panel, UILayout
 from ..scene.settings import SPARSEMOCAP_PG_settings, settings_of
 from ..session.core import missing_reason
 from ..session.database import BUILDING, databases, default_output, last_build
+from ..session.demo import MAKING, TRYING
 from ..session.free_motions import FREE_MOTIONS
 from . import text
 from .step import StepPanel, action_button, job_is_running, redraw_soon, tick
@@ -37,6 +38,7 @@ class SPARSEMOCAP_PT_database(StepPanel, Panel):
         if settings.database:
             _contents(self.layout, context, settings)
         else:
+            first_try(self.layout, context)
             hint = "Open a motion database (.smdb), or build one:"
             text.paragraph(self.layout, context, hint, icon="INFO")
         _outcome(self.layout, context)
@@ -47,6 +49,21 @@ class SPARSEMOCAP_PT_database(StepPanel, Panel):
     def draw_header_preset(self, context: Context) -> None:
         """A check mark when the step is done."""
         tick(self.layout, databases, bpy.path.abspath(settings_of(context.scene).database))
+
+
+def first_try(layout: UILayout, context: Context) -> None:
+    """What a new user can do without files and sensors."""
+    box = layout.box()
+    box.label(text="New here?")
+    action_button(box, "sparse_mocap.try_it", "PLAY", TRYING, is_ready=True)
+    text.paragraph(
+        box,
+        context,
+        "A simulated performer with four simulated sensors, and a Rigify character that follows: "
+        "no file and no sensor is needed",
+    )
+    action_button(box, "sparse_mocap.make_starter_set", "ADD", MAKING, is_ready=True, is_main=False)
+    text.paragraph(box, context, "Demo movements, made by a program, to try things out")
 
 
 def _free_motions(layout: UILayout, context: Context) -> None:

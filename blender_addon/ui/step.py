@@ -40,15 +40,21 @@ def job_is_running(label: str) -> bool:
 
 
 def action_button(
-    layout: UILayout, operator: str, icon: str, job_label: str, *, is_ready: bool
+    layout: UILayout,
+    operator: str,
+    icon: str,
+    job_label: str,
+    *,
+    is_ready: bool,
+    is_main: bool = True,
 ) -> None:
-    """The step's main button, replaced by the progress while its job runs."""
+    """A job's button, replaced by the progress while it runs; large if it is the main one."""
     job = jobs.current()
     if job is not None and job_is_running(job_label):
         _progress(layout, job)
         return
     row = layout.row()
-    row.scale_y = 1.5
+    row.scale_y = 1.5 if is_main else 1.0
     row.enabled = is_ready and job is None
     row.operator(operator, icon=icon)
 

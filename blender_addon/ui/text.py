@@ -4,20 +4,25 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Callable
 
+import blf
 from bpy.types import Context, UILayout
 
-_CHARACTER_PX = 6.4  # of the interface font, on average
-_MARGIN_PX = 50.0
+_FONT = 0  # the interface's
+_MARGIN_PX = 58.0  # of panel and box, and the scroll bar
 _ICON_PX = 24.0
+_USUAL_WIDTH_PX = 260.0
+_NARROWEST_PX = 80.0
 
 
 def paragraph(layout: UILayout, context: Context, text: str, icon: str = "NONE") -> None:
     """Show the text, wrapped to the width of the sidebar."""
     scale = context.preferences.system.ui_scale
-    width = context.region.width / scale if context.region is not None else 260.0
+    width = context.region.width / scale if context.region is not None else _USUAL_WIDTH_PX
     room = width - _MARGIN_PX - (0.0 if icon == "NONE" else _ICON_PX)
-    lines = textwrap.wrap(text, max(int(room / _CHARACTER_PX), 16)) or [""]
+    blf.size(_FONT, context.preferences.ui_styles[0].widget.points)
+    lines = wrapped(text, lambda line: blf.dimensions(_FONT, line)[0], max(room, _NARROWEST_PX))
     column = layout.column(align=True)
     column.scale_y = 0.8
     for index, line in enumerate(lines):
@@ -25,6 +30,18 @@ def paragraph(layout: UILayout, context: Context, text: str, icon: str = "NONE")
             column.label(text=line)
         else:
             column.label(text=line, icon=icon if index == 0 else "BLANK1")
+
+
+def wrapped(text: str, width_of: Callable[[str], float], room: float) -> list[str]:
+    """The text in lines that are no wider than the room, unless a single word is."""
+    lines: list[str] = []
+    for word in text.split():
+        longer = f"{lines[-1]} {word}" if lines else word
+        if lines and width_of(longer) <= room:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines or [""]
 
 
 def error(layout: UILayout, context: Context, text: str) -> None:

@@ -12,21 +12,34 @@ from support import Skipped, expected_performance, library
 
 BINDINGS = Path(__file__).parents[2] / "bindings"
 SCRIPT = BINDINGS / "sparse_mocap_demo" / "render_scene.py"
+EXAMPLE = BINDINGS / "sparse_mocap_demo" / "example_scene.py"
 
 
-def _make(folder: Path, *options: str) -> subprocess.CompletedProcess:
-    import sparse_mocap
-
+def _run(script: Path, folder: Path, arguments: list[str]) -> subprocess.CompletedProcess:
     if not bpy.app.binary_path:
         raise Skipped("a bpy module has no command line")
     if not (BINDINGS / "sparse_mocap" / f"_core{EXTENSION_SUFFIXES[0]}").is_file():
         raise Skipped(
             "the sources, which the demonstration runs from, have no core for this Python"
         )
+    command = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1"]
+    names = ("RESOURCES", "SCRIPTS", "CONFIG")  # nothing is installed there
+    own = {f"BLENDER_USER_{name}": str(folder / "user") for name in names}
+    return subprocess.run(
+        [*command, "--python", script, "--", *arguments],
+        env=os.environ | own,
+        capture_output=True,
+        text=True,
+        timeout=200,
+    )
+
+
+def _make(folder: Path, *options: str) -> subprocess.CompletedProcess:
+    import sparse_mocap
+
     reconstructed = folder / "reconstructed.bvh"
     sparse_mocap.write_bvh(reconstructed, expected_performance().motion)
     performed = next(library().motions.iterdir())
-    command = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1"]
     files = {
         "--performed": performed,
         "--reconstructed": reconstructed,
@@ -34,15 +47,7 @@ def _make(folder: Path, *options: str) -> subprocess.CompletedProcess:
         "--picture": folder / "figures.png",
     }
     arguments = [str(part) for item in files.items() for part in item]
-    names = ("RESOURCES", "SCRIPTS", "CONFIG")  # nothing is installed there
-    own = {f"BLENDER_USER_{name}": str(folder / "user") for name in names}
-    return subprocess.run(
-        [*command, "--python", SCRIPT, "--", *arguments, "--samples", "1", *options],
-        env=os.environ | own,
-        capture_output=True,
-        text=True,
-        timeout=200,
-    )
+    return _run(SCRIPT, folder, [*arguments, "--samples", "1", *options])
 
 
 def test_makes_a_picture_and_a_blend_that_plays(tmp_path):
@@ -73,3 +78,13 @@ def test_a_missing_file_ends_with_an_error_code(tmp_path):
     done = _make(tmp_path, "--performed", str(tmp_path / "missing.bvh"))
     assert done.returncode == 1
     assert not (tmp_path / "figures.png").exists()
+
+
+def test_the_example_plays_a_performer_and_a_character(tmp_path):
+    done = _run(EXAMPLE, tmp_path, ["--blend", str(tmp_path / "example.blend")])
+    assert done.returncode == 0, done.stdout + done.stderr
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "example.blend"))
+    assert bpy.data.objects["Simulated Performer"].animation_data.action is not None
+    characters = [obj for obj in bpy.data.objects if obj.type == "ARMATURE"]
+    assert all(obj.animation_data.action is not None for obj in characters)
+    assert len(characters) == 2
