@@ -3,7 +3,7 @@
 
 from bpy.types import Context, Operator
 
-from ..scene import overlay
+from ..scene import overlay, sensor_graph
 from ..scene.armature import is_ours
 from ..scene.body import new_body
 from ..scene.live import followed
@@ -45,7 +45,8 @@ class SPARSEMOCAP_OT_toggle_overlay(Operator):
     bl_label = "Show Sensors"
     bl_description = (
         "Show in the viewport where the sensors are on the character (blue; without data orange "
-        "and small) and which feet stand on the floor (green squares)"
+        "and small), which feet stand on the floor (green squares), and which limbs are unsure, "
+        "typically more than 8 cm off (long orange dashes) or 15 cm (short pink dashes)"
     )
     bl_options = {"INTERNAL"}
 
@@ -60,4 +61,30 @@ class SPARSEMOCAP_OT_toggle_overlay(Operator):
         return {"FINISHED"}
 
 
-CLASSES = (SPARSEMOCAP_OT_add_body, SPARSEMOCAP_OT_toggle_overlay)
+class SPARSEMOCAP_OT_toggle_sensor_graph(Operator):
+    """Show what each sensor measured and what it should read."""
+
+    bl_idname = "sparse_mocap.toggle_sensor_graph"
+    bl_label = "Sensor Graph"
+    bl_description = (
+        "Show in the viewport, around the current frame, what each sensor of the take measured "
+        "(blue) and what it should read on the result (orange, dashed), in m/s², gravity included. "
+        "Where they differ, the result is not what was performed"
+    )
+    bl_options = {"INTERNAL"}
+
+    def execute(self, context: Context) -> set[str]:
+        """Switch it on or off."""
+        try:
+            sensor_graph.toggle(context)
+        except Exception as error:
+            self.report({"ERROR"}, one_line(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+CLASSES = (
+    SPARSEMOCAP_OT_add_body,
+    SPARSEMOCAP_OT_toggle_overlay,
+    SPARSEMOCAP_OT_toggle_sensor_graph,
+)

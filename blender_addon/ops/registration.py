@@ -7,7 +7,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..scene import live as live_scene
-from ..scene import overlay, prompt
+from ..scene import overlay, prompt, sensor_graph
 from ..session import job
 from ..session import live as live_session
 from ..session.calibrating import calibrations
@@ -57,6 +57,7 @@ def _before_load(*_: object) -> None:
     live_scene.stop_ticking()
     prompt.hide()
     overlay.hide()
+    sensor_graph.hide()
     live_session.end()
 
 
@@ -98,6 +99,7 @@ def unregister() -> None:
     live_scene.stop_ticking()
     prompt.hide()
     overlay.hide()
+    sensor_graph.hide()
     _end_all()
     atexit.unregister(_end_all)
     bpy.app.handlers.save_post.remove(_after_save)

@@ -162,6 +162,16 @@ def point_shader() -> Any:
     return shader
 
 
+def plain_shader() -> Any:
+    """The bound shader that fills shapes in pixels with one colour."""
+    try:
+        shader = gpu.shader.from_builtin(_PLAIN_SHADER)
+    except ValueError:  # before 4.0
+        shader = gpu.shader.from_builtin("2D_UNIFORM_COLOR")
+    shader.bind()
+    return shader
+
+
 def is_rendering() -> bool:
     """Whether a render is running, during which nothing may be changed."""
     return bpy.app.is_job_running("RENDER")

@@ -27,7 +27,7 @@ from .armature import (
     rig_of,
     use_quaternions,
 )
-from .axes import bone_quaternions, to_blender
+from .axes import Floats, bone_quaternions, to_blender
 from .pose_memory import PoseMemory
 from .rig_pose import RigPose
 from .settings import settings_of
@@ -49,6 +49,8 @@ class _Followed:
     rig: RigPose | None
     """Another character."""
     stage: Stage = field(default_factory=Stage)
+    spread_m: Floats = field(default_factory=lambda: np.empty(0))
+    """(J,) of the pose that is shown."""
 
 
 _followed: _Followed | None = None
@@ -93,6 +95,13 @@ def follow(context: Context, skeleton: Any) -> Object:
     _ended = ""
     ensure_ticking()
     return armature
+
+
+def spread_m(armature: Object) -> Floats | None:
+    """(J,) how far retrieved poses deviate from the live one; None if that is on another one."""
+    if _followed is None or _followed.armature != armature.name:
+        return None
+    return _followed.spread_m
 
 
 def target_of(armature: Object) -> Target | None:
@@ -166,6 +175,7 @@ def tick() -> Pose | None:
     pose = session.newest_pose()
     if pose is None:
         return None
+    _followed.spread_m = pose.spread_m
     shown = _followed.stage.shown(pose, in_place=settings_of(bpy.context.scene).in_place)
     if _followed.rig is not None:
         _followed.rig.show(armature, _motion(_followed.skeleton, shown))

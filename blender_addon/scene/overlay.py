@@ -8,18 +8,24 @@ from typing import Any
 
 import bpy
 import gpu
+import numpy as np
 from bpy.types import Context, Object
-from gpu_extras.batch import batch_for_shader
 from mathutils import Vector
 
 from ..session import live
+from ..session.certainty import Certainty, certainty_of
 from ..session.core import core
 from ..session.errors import InputError
+from ..session.reconstruct import kept
 from ..session.take import takes
 from . import compat
+from . import live as live_scene
 from .armature import is_ours
+from .axes import Floats
 from .binding import character_of
+from .drawing import dashes, lines, points, square
 from .figure import figure_names
+from .performance import facts_of, performed_action
 from .rig_action import CONTACTS
 from .settings import settings_of
 
@@ -28,6 +34,11 @@ _WORN = (0.0, 0.447, 0.698, 1.0)
 _SILENT = (0.835, 0.369, 0.0, 1.0)
 _STANDING = (0.0, 0.62, 0.451, 1.0)
 _RIM = (1.0, 1.0, 1.0, 1.0)
+# The colour of an uncertain limb, and its dashes relative to the character's height.
+_UNCERTAIN = {
+    Certainty.UNSURE: ((0.902, 0.624, 0.0, 1.0), 0.03),
+    Certainty.GUESSED: ((0.8, 0.475, 0.655, 1.0), 0.012),
+}
 
 # The joint along whose bone a sensor is worn, and how far from that one's beginning.
 _CARRIERS = {
@@ -52,6 +63,16 @@ class Mark:
     site: str
     place: Vector
     is_silent: bool
+
+
+@dataclass(frozen=True)
+class UncertainLimb:
+    """A limb whose end may be elsewhere, in the world."""
+
+    joint: str
+    head: Vector
+    tail: Vector
+    certainty: Certainty
 
 
 @dataclass
@@ -98,6 +119,37 @@ def sensor_marks(context: Context) -> list[Mark]:
         if place is not None:
             marks.append(Mark(site, place, is_silent))
     return marks
+
+
+def uncertain_limbs(context: Context) -> list[UncertainLimb]:
+    """The limbs of the character that are not sure in this frame, or live."""
+    armature = _armature()
+    if armature is None or _shown is None:
+        return []
+    spread = spread_at(context, armature)
+    limbs = []
+    for joint, deviation_m in zip(core().standard_joint_names(), spread, strict=False):
+        certainty = certainty_of(float(deviation_m))
+        bone = armature.pose.bones.get(_shown.bones.get(joint, ""))
+        if certainty is Certainty.SURE or bone is None:
+            continue
+        world = armature.matrix_world
+        limbs.append(UncertainLimb(joint, world @ bone.head, world @ bone.tail, certainty))
+    return limbs
+
+
+def spread_at(context: Context, armature: Object) -> Floats:
+    """(J,) how far retrieved poses deviate in the live pose or in this frame; (0,) if unknown."""
+    live_spread = live_scene.spread_m(armature)
+    if live_spread is not None:
+        return live_spread
+    action = performed_action(armature)
+    facts = facts_of(action) if action is not None else None
+    performance = kept(facts.take) if facts is not None else None
+    if facts is None or performance is None:
+        return np.empty(0)
+    frame = performance.frame_at(facts.time_s(context.scene.frame_current_final))
+    return np.empty(0) if frame is None else performance.spread_m[frame]
 
 
 def standing_feet(context: Context) -> list[Vector]:
@@ -160,39 +212,18 @@ def _draw() -> None:
     gpu.state.depth_test_set("NONE")
     gpu.state.blend_set("ALPHA")
     size = 12.0 * context.preferences.system.ui_scale
-    _points([mark.place for mark in marks], _RIM, size + 4.0)
-    _points([mark.place for mark in marks if not mark.is_silent], _WORN, size)
-    _points([mark.place for mark in marks if mark.is_silent], _SILENT, 0.5 * size)
     armature = _armature()
     if armature is not None:
-        half = 0.06 * max(armature.dimensions.z, 1e-6)
+        height = max(armature.dimensions.z, 1e-6)
+        for limb in uncertain_limbs(context):
+            colour, dash = _UNCERTAIN[limb.certainty]
+            lines(dashes(limb.head, limb.tail, dash * height), colour, 5.0)
         for place in standing_feet(context):
-            _square(place, half)
+            lines(square(place, 0.06 * height), _STANDING, 3.0)
+    points([mark.place for mark in marks], _RIM, size + 4.0)
+    points([mark.place for mark in marks if not mark.is_silent], _WORN, size)
+    points([mark.place for mark in marks if mark.is_silent], _SILENT, 0.5 * size)
     gpu.state.blend_set("NONE")
-
-
-def _points(places: list[Vector], colour: tuple[float, ...], size_px: float) -> None:
-    if not places:
-        return
-    shader = compat.point_shader()
-    gpu.state.point_size_set(size_px)
-    shader.uniform_float("color", colour)
-    batch_for_shader(shader, "POINTS", {"pos": places}).draw(shader)
-
-
-def _square(place: Vector, half: float) -> None:
-    """A square on the floor around a foot."""
-    corners = [
-        place + Vector((half * x, half * y, 0.0)) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))
-    ]
-    shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
-    shader.bind()
-    shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
-    shader.uniform_float("lineWidth", 3.0)
-    shader.uniform_float("color", _STANDING)
-    lines = [corners[0], corners[1], corners[1], corners[2]]
-    lines += [corners[2], corners[3], corners[3], corners[0]]
-    batch_for_shader(shader, "LINES", {"pos": lines}).draw(shader)
 
 
 def toggle(context: Context, armature: Object | None) -> bool:

@@ -39,6 +39,17 @@ class Facts:
     is_guess: bool
     take: str
     """The name of its take."""
+    first_frame: float = 1.0
+    begin_s: float = 0.0
+    """The time in the take that is on the first frame."""
+    frames_per_s: float = 0.0
+    """0: unknown."""
+
+    def time_s(self, frame: float) -> float:
+        """The time in the take at a frame of the scene; NaN where it is unknown."""
+        if self.frames_per_s <= 0.0:
+            return float("nan")
+        return self.begin_s + (frame - self.first_frame) / self.frames_per_s
 
 
 def perform_steps(context: Context, take: PlacedTake, figure: Object | None) -> Steps[Object]:
@@ -89,6 +100,9 @@ def _assign(context: Context, take: PlacedTake, made: list[tuple[str, Action]]) 
         take.performance.match,
         take.performance.is_guess,
         take.performance.name,
+        take.placement.start_frame,
+        take.placement.part_s[0] if take.placement.part_s is not None else 0.0,
+        take.placement.scene_rate_hz,
     )
     for name, action in made:
         action[_FACTS] = asdict(facts)
@@ -122,10 +136,12 @@ def facts_of(action: Action) -> Facts | None:
     values = action.get(_FACTS)
     if not hasattr(values, "to_dict"):
         return None
-    known = values.to_dict()
-    if known.keys() != {field.name for field in fields(Facts)}:
-        return None  # another version's
-    return Facts(**known)
+    names = {field.name for field in fields(Facts)}
+    known = {name: value for name, value in values.to_dict().items() if name in names}
+    try:
+        return Facts(**known)
+    except TypeError:  # another version's
+        return None
 
 
 def performed_action(obj: Object | None) -> Action | None:

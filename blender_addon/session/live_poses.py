@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,8 @@ class Pose:
     root_position: NDArray[np.float64]  # (3,) m
     time_s: float
     """When the sensors read it, on the machine's monotonic clock."""
+    spread_m: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    """(J,) how far the retrieved poses deviate; (0,) where the method tells nothing."""
 
 
 @dataclass(frozen=True)
@@ -110,4 +112,5 @@ class LivePoses:
             np.array(estimate.rotations),
             np.array(estimate.root_position),
             estimate.time_s,
+            np.array(estimate.diagnostics.get("spread_m", ())),
         )

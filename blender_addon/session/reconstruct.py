@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .calibrating import calibration_at
+from .certainty import SensorCurves, sensor_curves, spread_of
 from .core import core
 from .database import Database, databases
 from .job import Job, Progress
@@ -34,6 +35,15 @@ class Performance:
     """How well the sensors match the motion database: good, fair or poor."""
     is_guess: bool
     """Whether the database has nothing like the take."""
+    spread_m: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)))
+    """(T, J) how far the retrieved poses deviate; (T, 0) where the method tells nothing."""
+    curves: SensorCurves | None = None
+    """What the sensors measured and should read."""
+
+    def frame_at(self, time_s: float) -> int | None:
+        """The pose at a time; None outside the take."""
+        frame = round(time_s / self.motion.frame_time_s) if np.isfinite(time_s) else -1
+        return frame if 0 <= frame < self.motion.num_frames else None
 
 
 _kept: dict[str, Performance] = {}
@@ -127,4 +137,6 @@ def reconstruct(
         duration_s=(motion.num_frames - 1) * motion.frame_time_s,
         match=sparse_mocap.report.match(solved),
         is_guess=sparse_mocap.report.is_unlike_the_database(solved),
+        spread_m=spread_of(solved),
+        curves=sensor_curves(solved),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from bpy.types import Context, Panel, UILayout
 
-from ..scene import overlay
+from ..scene import overlay, sensor_graph
 from ..scene.armature import is_ours
 from ..scene.ghost import ghost_of
 from ..scene.performance import facts_of, performed_action
@@ -185,8 +185,14 @@ def _performed(layout: UILayout, context: Context) -> None:
         action_button(layout, "sparse_mocap.update_action", "NONE", PLACING_AGAIN, is_ready=True)
     elif kept(facts.take) is not None:
         layout.operator("sparse_mocap.update_action", icon="FILE_REFRESH")
-    is_shown = overlay.is_shown()
-    layout.operator("sparse_mocap.toggle_overlay", icon="HIDE_OFF", depress=is_shown)
+    row = layout.row(align=True)
+    row.operator(
+        "sparse_mocap.toggle_overlay", text="Sensors", icon="HIDE_OFF", depress=overlay.is_shown()
+    )
+    row.operator(
+        "sparse_mocap.toggle_sensor_graph", text="Graph", icon="GRAPH",
+        depress=sensor_graph.is_shown(),
+    )  # fmt: skip
     row = layout.row(align=True)
     if ghost_of(context, active) is None:
         row.operator("sparse_mocap.compare", icon="GHOST_ENABLED")
