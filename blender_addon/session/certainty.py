@@ -54,7 +54,8 @@ class SensorCurves:
     @property
     def largest(self) -> float:
         """The largest value, m/s^2."""
-        return float(np.nanmax([self.measured, self.expected], initial=0.0))
+        values = np.concatenate([self.measured, self.expected])
+        return float(np.max(values[np.isfinite(values)], initial=0.0))
 
 
 def sensor_curves(solved: Any) -> SensorCurves | None:
