@@ -67,7 +67,7 @@ class MotionDatabase:
     def build_info(self) -> str:
         """JSON: options and counts of the build."""
     def array(self, name: str) -> NDArray[np.float32]:
-        """A read-only view of the rows.
+        """A read-only copy of the rows as float32.
 
         Names: angles, positions, root_motion, contacts, specific_force_pivot, specific_force_end,
         angular_velocity, up.
@@ -77,6 +77,15 @@ class MotionDatabase:
     model_names: list[str]
     def model(self, method: str) -> Model:
         """What a method learned and keeps here, see store_model. Raises FormatError."""
+    @property
+    def sections(self) -> list[str]:
+        """The names of the optional parts that it holds."""
+    @property
+    def rows_hash(self) -> str:
+        """Tells these rows from all others: XXH3, 16 hexadecimal digits."""
+    @property
+    def array_bytes(self) -> dict[str, int]:
+        """What its rows take in the file, by the names of array()."""
     @property
     def other_tensors(self) -> list[tuple[str, str, tuple[int, ...], int]]:
         """Tensors that other programs put into the file: name, element type, shape, bytes."""

@@ -6,32 +6,44 @@
 #include "sparse_mocap/database/clip_motion.hpp"
 #include "sparse_mocap/database/model.hpp"
 #include "sparse_mocap/database/motion_database.hpp"
+#include "sparse_mocap/database/sections.hpp"
 #include "sparse_mocap/database/stored_models.hpp"
 
 namespace sparse_mocap::python {
 namespace {
 
-using Database = std::shared_ptr<const MotionDatabase>;
+using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-const FloatRows& rows_named(const MotionDatabase& database, const std::string& name) {
-  if (name == "angles") return database.angles();
-  if (name == "positions") return database.positions();
+// What all sites read, three columns each in the order of site_names.
+Rows of_all_sites(const MotionDatabase& database, ScaledRows SiteRows::*member) {
+  const std::size_t num_sites = database.site_names().size();
+  Rows rows(database.num_frames(), static_cast<Eigen::Index>(3 * num_sites));
+  for (std::size_t s = 0; s < num_sites; ++s)
+    rows.middleCols(static_cast<Eigen::Index>(3 * s), 3) = (database.site(s).*member).all();
+  return rows;
+}
+
+Rows rows_named(const MotionDatabase& database, const std::string& name) {
+  if (name == "angles") return database.angles().all();
+  if (name == "positions") return database.positions().all();
   if (name == "root_motion") return database.root_motion();
-  if (name == "contacts") return database.contacts();
-  if (name == "specific_force_pivot") return database.specific_force_pivot();
-  if (name == "specific_force_end") return database.specific_force_end();
-  if (name == "angular_velocity") return database.angular_velocity();
-  if (name == "up") return database.gravity_direction();
+  if (name == "contacts") return database.contacts().cast<float>();
+  if (name == "specific_force_pivot")
+    return of_all_sites(database, &SiteRows::specific_force_pivot);
+  if (name == "specific_force_end") return of_all_sites(database, &SiteRows::specific_force_end);
+  if (name == "angular_velocity") return of_all_sites(database, &SiteRows::angular_velocity);
+  if (name == "up") return of_all_sites(database, &SiteRows::gravity_direction);
   throw py::key_error("a motion database has no array '" + name + "'");
 }
 
-// A read-only view that keeps the database alive.
-py::array view_of(const Database& database, const std::string& name) {
-  const FloatRows& rows = rows_named(*database, name);
-  py::array view(py::dtype::of<float>(), {rows.rows(), rows.cols()}, rows.data(),
-                 py::cast(database));
-  view.attr("setflags")(py::arg("write") = false);
-  return view;
+// A read-only array of its own memory.
+py::array array_of(const MotionDatabase& database, const std::string& name) {
+  auto rows = std::make_unique<Rows>(rows_named(database, name));
+  const Rows& values = *rows;
+  const py::capsule owner(rows.release(), [](void* p) { delete static_cast<Rows*>(p); });
+  py::array array(py::dtype::of<float>(), {values.rows(), values.cols()}, values.data(), owner);
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
 }
 
 std::vector<std::pair<std::string, std::string>> pairs_of(const std::vector<LeftOut>& files) {
@@ -50,10 +62,35 @@ py::list other_tensors(const MotionDatabase& database) {
   };
   py::list rows;
   for (const auto& tensor : database.further().tensors)
-    if (!is_of_some_model(tensor))
+    if (!is_of_some_model(tensor) && !is_of_section(tensor))
       rows.append(py::make_tuple(tensor.name, name_of(tensor.type),
                                  py::tuple(py::cast(tensor.shape)), tensor.bytes.size()));
   return rows;
+}
+
+std::size_t bytes_of(const ScaledRows& rows) {
+  return static_cast<std::size_t>(rows.rows() * rows.cols()) * sizeof(std::int16_t);
+}
+
+std::map<std::string, std::size_t> array_bytes(const MotionDatabase& database) {
+  const SiteRows& site = database.site(0);
+  const std::size_t num_sites = database.site_names().size();
+  const auto num_frames = static_cast<std::size_t>(database.num_frames());
+  return {{"angles", bytes_of(database.angles())},
+          {"positions", bytes_of(database.positions())},
+          {"root_motion", root_motion_column::count * sizeof(float) * num_frames},
+          {"contacts", 2 * num_frames},
+          {"specific_force_pivot", num_sites * bytes_of(site.specific_force_pivot)},
+          {"specific_force_end", num_sites * bytes_of(site.specific_force_end)},
+          {"angular_velocity", num_sites * bytes_of(site.angular_velocity)},
+          {"up", num_sites * bytes_of(site.gravity_direction)}};
+}
+
+std::vector<std::string> section_names(const MotionDatabase& database) {
+  std::vector<std::string> names;
+  for (const auto& [name, section] : sections_of(database.further()))
+    if (database.section(name) != nullptr) names.push_back(name);
+  return names;
 }
 
 void bind_clips(py::module_& m) {
@@ -99,12 +136,7 @@ using DatabaseClass = py::class_<MotionDatabase, std::shared_ptr<MotionDatabase>
 
 void bind_content(DatabaseClass& database) {
   database
-      .def(
-          "array",
-          [](const std::shared_ptr<MotionDatabase>& d, const std::string& name) {
-            return view_of(d, name);
-          },
-          py::arg("name"), R"doc(A read-only view of the rows.
+      .def("array", &array_of, py::arg("name"), R"doc(A read-only copy of the rows as float32.
 
 Names: angles, positions, root_motion, contacts, specific_force_pivot, specific_force_end,
 angular_velocity, up.)doc")
@@ -119,6 +151,12 @@ angular_velocity, up.)doc")
           },
           py::arg("method"),
           "What a method learned and keeps here, see store_model. Raises FormatError.")
+      .def_property_readonly("array_bytes", &array_bytes,
+                             "What its rows take in the file, by the names of array().")
+      .def_property_readonly("sections", &section_names,
+                             "The names of the optional parts that it holds.")
+      .def_property_readonly("rows_hash", &MotionDatabase::rows_hash,
+                             "Tells these rows from all others: XXH3, 16 hexadecimal digits.")
       .def_property_readonly(
           "other_tensors", &other_tensors,
           R"doc(Tensors that other programs put into the file: name, element type, shape, bytes.)doc");

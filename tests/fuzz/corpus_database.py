@@ -209,6 +209,94 @@ def damaged_headers() -> dict[str, bytes]:
     return files
 
 
+# --- Version 2 -----------------------------------------------------------------------------------
+
+SITE_ARRAYS = ("specific_force_pivot", "specific_force_end", "angular_velocity", "up")
+PACKED = {"angles": 43, "positions": 63} | {f"sites/head/{name}": 3 for name in SITE_ARRAYS}
+TYPES = {"I16": 2, "F32": 4, "U8": 1}
+Arrays = dict[str, tuple[str, int, bytes]]
+
+
+def second_metadata(clips: list[int]) -> dict[str, str]:
+    metadata = metadata_of(clips) | {"format_version": "2", "sites": '["head"]'}
+    compact = json.dumps(json.loads(metadata["skeleton"]), separators=(",", ":"))
+    return metadata | {"skeleton": compact}
+
+
+def second_arrays(clips: list[int]) -> Arrays:
+    """Element type, columns and content of each array; clips: their lengths."""
+    frames = sum(clips)
+    scales = struct.pack(f"<{len(clips)}f", *[2.0**-14] * len(clips))
+    arrays: Arrays = {
+        "root_motion": ("F32", 4, struct.pack(f"<{4 * frames}f", *[0.5] * (4 * frames)))
+    }
+    arrays |= {f"{name}/scale": ("F32", 1, scales) for name in PACKED}
+    for name, columns in PACKED.items():
+        values = [(7 * value) % 40000 - 20000 for value in range(frames * columns)]
+        if name.endswith("/up"):
+            values = [0, 2**14, 0] * frames
+        arrays[name] = ("I16", columns, struct.pack(f"<{len(values)}h", *values))
+    return arrays | {"contacts": ("U8", 2, bytes([1, 0] * frames))}
+
+
+def second_file(metadata: dict[str, str], arrays: Arrays) -> bytes:
+    sums = {name: content for name, (_, _, content) in arrays.items()}
+    header: Json = {"__metadata__": sealed(metadata, sums)}
+    begin = 0
+    for name, (kind, columns, content) in arrays.items():
+        header[name] = {
+            "dtype": kind, "shape": [len(content) // TYPES[kind] // columns, columns],
+            "data_offsets": [begin, begin + len(content)],
+        }  # fmt: skip
+        begin += len(content)
+    return encoded(json.dumps(header, separators=(",", ":")), b"".join(sums.values()))
+
+
+def second_files() -> dict[str, bytes]:
+    metadata = second_metadata([1])
+    good = second_arrays([1])
+    files = {f"no_{name}": {n: a for n, a in good.items() if n != name} for name in good}
+    for name in PACKED:
+        for kind, scale in (("nan", float("nan")), ("zero", 0.0), ("minus", -1.0), ("inf", 1e38)):
+            changed = struct.pack("<f", scale)
+            files[f"{name}_scale_{kind}"] = good | {f"{name}/scale": ("F32", 1, changed)}
+    up, root, angles = good["sites/head/up"], good["root_motion"], good["angles"]
+    files |= {
+        "up_of_no_length": good | {"sites/head/up": (*up[:2], bytes(6))},
+        "smallest": good | {"angles": (*angles[:2], b"\0\x80" * 43)},
+        "root_nan": good | {"root_motion": (*root[:2], b"\0\0\xc0\x7f" + root[2][4:])},
+        "contact_2": good | {"contacts": ("U8", 2, b"\2\0")},
+        "two_rows": second_arrays([2]),
+        "two_scales": good | {"angles/scale": ("F32", 1, good["angles/scale"][2] * 2)},
+        "as_floats": good | {"angles": ("F32", 43, angles[2] * 2)},
+        "flat": good | {"angles": ("I16", 1, angles[2])},
+        "section": good | {"sections/index/order": ("I16", 1, b"\1\2")},
+    }  # fmt: skip
+    made = {name: second_file(metadata, arrays) for name, arrays in files.items()}
+    listed = {"index": {"version": 1, "rows": "", "metadata": {"leaf": "64"}}}
+    lists = ["", "[]", "null", '{"index":1}', '{"In":{}}', '{"index":{}}', json.dumps(listed),
+             json.dumps({"index": listed["index"] | {"rows": "0" * 16}}),
+             json.dumps({"index": listed["index"] | {"rows": 1}}),
+             json.dumps({"index": listed["index"] | {"metadata": [1]}}),
+             json.dumps({"index": listed["index"] | {"version": 1.5}})]  # fmt: skip
+    for index, text in enumerate(lists):
+        made[f"sections_{index}"] = second_file(metadata | {"sections": text}, files["section"])
+    two = second_metadata([2, 1])
+    made |= {
+        "whole": second_file(metadata, good),
+        "two_clips": second_file(two, second_arrays([2, 1])),
+        "sites_twice": second_file(metadata | {"sites": '["head","head"]'}, good),
+        "sites_other": second_file(metadata | {"sites": '["chest"]'}, good),
+        "clips_none": second_file(metadata | {"clips": "[]"}, good),
+        "clips_many": second_file(metadata | {"clips": json.dumps([clip(0, 2**30)])}, good),
+        "clips_far": second_file(
+            metadata | {"clips": json.dumps([clip(0, 1), clip(1, 2**31 - 1)])}, good
+        ),
+        "as_version_1": second_file(metadata | {"format_version": "1"}, good),
+    }
+    return {f"second_{name.replace('/', '_')}": content for name, content in made.items()}
+
+
 def database_files() -> dict[str, bytes]:
     whole = file_of(metadata_of([1]), arrays_of([1]))
     files = {
@@ -222,4 +310,5 @@ def database_files() -> dict[str, bytes]:
     }  # fmt: skip
     files |= {f"cut_{part:02}": whole[: len(whole) * part // 12] for part in range(1, 12)}
     files |= damaged_metadata() | damaged_arrays() | damaged_headers() | with_models()
+    files |= second_files()
     return files

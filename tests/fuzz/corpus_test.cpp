@@ -45,7 +45,7 @@ TEST_P(Corpus, EveryCutIsRefusedOrReadSoundly) {
 INSTANTIATE_TEST_SUITE_P(Formats, Corpus,
                          ::testing::Values(Format{"bvh", "whole.bvh", try_bvh},
                                            Format{"acclaim", "whole.acclaim", try_acclaim},
-                                           Format{"database", "whole.smdb", try_database},
+                                           Format{"database", "second_whole.smdb", try_database},
                                            Format{"model", "whole.smmodel", try_model}),
                          [](const auto& format) { return std::string(format.param.name); });
 

@@ -20,4 +20,4 @@ def test_the_corpus_is_what_its_script_makes(kind: str, monkeypatch: pytest.Monk
     assert committed.items() <= made.items()
     assert set(committed.values()) == set(made.values())
     assert len(committed) >= 100
-    assert max(map(len, files.values())) < 4096
+    assert max(map(len, files.values())) < 8192

@@ -38,7 +38,16 @@ def test_anyone_can_open_the_file(database: MotionDatabase, database_path: Path,
     array = database.array(name)
     assert array.shape == (database.num_frames, ARRAYS[name])
     assert array.dtype == np.float32
-    np.testing.assert_array_equal(public[name], array)
+    lengths = [clip.end - clip.begin for clip in database.clips]
+
+    def scaled(stored: str) -> np.ndarray:
+        return public[stored] * np.repeat(public[f"{stored}/scale"], lengths, axis=0)
+
+    if ARRAYS[name] == 42:
+        expected = np.hstack([scaled(f"sites/{site}/{name}") for site in database.site_names])
+    else:
+        expected = public[name] if name in ("root_motion", "contacts") else scaled(name)
+    np.testing.assert_array_equal(expected, array)
 
 
 def test_the_file_says_what_it_is(database_path: Path) -> None:
@@ -48,11 +57,10 @@ def test_the_file_says_what_it_is(database_path: Path) -> None:
     assert all(isinstance(value, str) for value in metadata.values())
 
 
-def test_arrays_are_views_that_nobody_writes_to(database_path: Path) -> None:
+def test_arrays_are_copies_that_nobody_writes_to(database_path: Path) -> None:
     opened = MotionDatabase(database_path)
     array = opened.array("positions")
     assert not array.flags.writeable
-    assert not array.flags.owndata
     first = array[0].copy()
     del opened
     np.testing.assert_array_equal(array[0], first)
@@ -79,7 +87,7 @@ def test_a_clip_is_its_file_on_the_standard_skeleton(
             continue
         motion = standard_motion(read_motion(library / clip.source)[0], database.skeleton)[0]
         truth = motion.resampled(database.rate_hz).joint_positions("heading")
-        np.testing.assert_allclose(positions[clip.begin : clip.end], truth, atol=1e-5)
+        np.testing.assert_allclose(positions[clip.begin : clip.end], truth, atol=1e-4)
 
 
 def test_a_mirrored_clip_mirrors_positions_and_readings(database: MotionDatabase) -> None:
@@ -102,7 +110,7 @@ def test_a_mirrored_clip_mirrors_positions_and_readings(database: MotionDatabase
         )
         now, before = slice(clip.begin, clip.end), slice(origin.begin, origin.end)
         np.testing.assert_allclose(
-            positions[now], positions[before][:, other] * [-1, 1, 1], atol=1e-4
+            positions[now], positions[before][:, other] * [-1, 1, 1], atol=2e-4
         )
         wrists = force[before][:, [1, 0, 3, 2]] * [1, -1, 1]
         np.testing.assert_allclose(force[now][:, :4], wrists, atol=1e-2)

@@ -15,10 +15,6 @@ from .. import Clip, FormatError, MotionDatabase
 
 __all__ = ["described", "is_copy", "show"]
 
-_ARRAYS = (
-    "angles", "positions", "root_motion", "contacts", "specific_force_pivot", "specific_force_end",
-    "angular_velocity", "up",
-)  # fmt: skip
 _MOST_NAMES, _MOST_FILES, _LONGEST_TEXT = 40, 10, 60
 
 
@@ -29,7 +25,7 @@ def described(opened: MotionDatabase) -> dict[str, Any]:
     return {
         "path": opened.path,
         "bytes": Path(opened.path).stat().st_size,
-        "array_bytes": {name: opened.array(name).nbytes for name in _ARRAYS},
+        "array_bytes": opened.array_bytes,
         "frames": opened.num_frames,
         "rate_hz": opened.rate_hz,
         "duration_s": opened.num_frames / opened.rate_hz,
@@ -53,6 +49,7 @@ def described(opened: MotionDatabase) -> dict[str, Any]:
         "skipped": [{"source": source, "reason": why} for source, why in opened.skipped],
         "duplicates": [{"source": source, "reason": why} for source, why in opened.duplicates],
         "models": [_model(opened, method) for method in opened.model_names],
+        "sections": opened.sections,
         "other_arrays": [_tensor(*info) for info in opened.other_tensors],
         "build": json.loads(opened.build_info),
         "clips": [_clip(clip) for clip in clips],
@@ -157,6 +154,7 @@ def show(info: Mapping[str, Any]) -> None:
         "licences": _counted(info["licenses"]),
         "sensors": ", ".join(info["sites"]),
         "joints": " ".join(info["joints"]),
+        "sections": ", ".join(info["sections"]),
         "build": ", ".join(f"{key} {value}" for key, value in info["build"].items()),
     }
     for name, text in rows.items():

@@ -15,6 +15,9 @@ class Bytes {
  public:
   virtual ~Bytes() = default;
   virtual std::span<const std::byte> view() const = 0;
+  // Says that a part of view() is not needed for a while: of a mapped file it need not stay in
+  // memory then, and is read again when it is used.
+  virtual void release(std::span<const std::byte>) const {}
 };
 
 std::shared_ptr<const Bytes> own_bytes(std::vector<std::byte> bytes);

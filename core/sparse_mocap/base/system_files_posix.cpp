@@ -26,6 +26,13 @@ class MappedBytes : public Bytes {
   std::span<const std::byte> view() const override {
     return {static_cast<const std::byte*>(address_), size_};
   }
+  void release(std::span<const std::byte> part) const override {
+    const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    const auto offset = static_cast<std::size_t>(part.data() - view().data());
+    const std::size_t begin = (offset + page - 1) / page * page;
+    const std::size_t end = (offset + part.size()) / page * page;
+    if (end > begin) madvise(static_cast<std::byte*>(address_) + begin, end - begin, MADV_DONTNEED);
+  }
 
  private:
   void* address_;

@@ -92,7 +92,7 @@ class ClipMaker {
 
   void add_copy(Clip clip, const Motion& motion) {
     stop_if_asked(stop_);
-    DatabaseRows rows = database_rows(motion, copies_.rate_hz);
+    PackedRows rows = packed(database_rows(motion, copies_.rate_hz));
     if (rows.num_frames() < kFewestFrames) return;
     if (!out_.clips.empty()) clip.warnings.clear();
     out_.clip_rows.push_back(std::move(rows));

@@ -11,7 +11,7 @@
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/database/clip.hpp"
 #include "sparse_mocap/database/clip_check.hpp"
-#include "sparse_mocap/database/database_rows.hpp"
+#include "sparse_mocap/database/packed_rows.hpp"
 #include "sparse_mocap/database/source_files.hpp"
 #include "sparse_mocap/formats/mapping_file.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
@@ -36,7 +36,7 @@ struct SurveyedFile {
 // A file on a database's skeleton.
 struct ImportedFile {
   std::vector<Clip> clips;  // the motion itself first, then its copies
-  std::vector<DatabaseRows> clip_rows;
+  std::vector<PackedRows> clip_rows;
   SourceSkeleton skeleton;
   StandardBones bones;                // the body's own, m
   std::vector<std::string> warnings;  // one line each

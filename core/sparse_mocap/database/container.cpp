@@ -11,6 +11,7 @@
 #include "sparse_mocap/base/checksum.hpp"
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/base/files.hpp"
+#include "sparse_mocap/base/ordered_work.hpp"
 #include "sparse_mocap/base/strict_json.hpp"
 
 namespace sparse_mocap {
@@ -22,6 +23,8 @@ constexpr char kFormat[] = "format";
 constexpr char kFormatVersion[] = "format_version";
 constexpr char kChecksums[] = "checksums";
 
+constexpr std::size_t kWorthThreads = 1 << 24;  // bytes
+
 std::string with_article(const ContainerFormat& format) { return std::string("a ") + format.what; }
 
 SafetensorsView parsed(std::span<const std::byte> file, const std::filesystem::path& path,
@@ -32,6 +35,13 @@ SafetensorsView parsed(std::span<const std::byte> file, const std::filesystem::p
     throw FormatError({path}, std::string("not a sound ") + format.what + ": " + error.what(),
                       format.remedy);
   }
+}
+
+std::string versions_of(const ContainerFormat& format) {
+  const std::string newest = std::to_string(format.version);
+  return format.oldest == format.version
+             ? "version " + newest
+             : "versions " + std::to_string(format.oldest) + " to " + newest;
 }
 
 // What to do about a file of another version.
@@ -50,11 +60,14 @@ Container::Container(std::span<const std::byte> file, const std::filesystem::pat
                      const ContainerFormat& format)
     : path_(path), format_(format), content_(parsed(file, path, format)) {
   check_format();
-  try {
-    check_checksums();
-  } catch (const json::exception&) {
-    refuse("its metadata is damaged");
-  }
+  check_checksums(nullptr);
+}
+
+Container::Container(const Bytes& file, const std::filesystem::path& path,
+                     const ContainerFormat& format)
+    : path_(path), format_(format), content_(parsed(file.view(), path, format)) {
+  check_format();
+  check_checksums(&file);
 }
 
 const std::string& Container::text(const std::string& key) const {
@@ -74,7 +87,7 @@ void Container::refuse(const std::string& problem) const {
                     format_.remedy);
 }
 
-void Container::check_format() const {
+void Container::check_format() {
   const auto at = metadata().find(kFormat);
   const std::string name = at == metadata().end() ? "" : at->second;
   for (const ContainerFormat& other : {kDatabaseFormat, kModelFormat})
@@ -83,22 +96,40 @@ void Container::check_format() const {
                         std::string("name a file that ends in ") + format_.ending);
   if (name != format_.name) refuse("it is a safetensors file of something else");
   const std::string& version = text(kFormatVersion);
-  if (version == std::to_string(format_.version)) return;
+  for (version_ = format_.oldest; version_ <= format_.version; ++version_)
+    if (version == std::to_string(version_)) return;
   throw FormatError({path_},
                     "is " + with_article(format_) + " of format version " + version +
-                        ", and this program reads version " + std::to_string(format_.version),
+                        ", and this program reads " + versions_of(format_),
                     remedy_for_version(version, format_));
 }
 
-void Container::check_checksums() {
+void Container::check_checksums(const Bytes* mapped) {
   if (metadata_checksum(metadata()) != text(kMetadataChecksum))
     refuse("its metadata does not match its checksum");
-  const json checksums = json::parse(text(kChecksums));
-  for (const auto& [name, sum] : checksums.items()) {
-    if (checksum(tensor(name).bytes) != sum.get<std::string>())
-      refuse("the array '" + name + "' does not match its checksum");
-    checked_.insert(name);
+  try {
+    checksums_ = json::parse(text(kChecksums)).get<std::map<std::string, std::string>>();
+  } catch (const json::exception&) {
+    refuse("its metadata is damaged");
   }
+  std::vector<std::pair<const Tensor*, const std::string*>> arrays;
+  std::size_t num_bytes = 0;
+  for (const auto& [name, sum] : checksums_) {
+    arrays.emplace_back(&tensor(name), &sum);
+    num_bytes += arrays.back().first->bytes.size();
+  }
+  const auto is_right = [&](std::size_t i, const std::stop_token&) {
+    const auto& [array, sum] = arrays[i];
+    const bool matches = checksum(array->bytes) == *sum;
+    if (mapped != nullptr) mapped->release(array->bytes);
+    return matches;
+  };
+  const auto take = [&](std::size_t i, bool matches) {
+    if (!matches) refuse("the array '" + arrays[i].first->name + "' does not match its checksum");
+  };
+  if (mapped != nullptr && num_bytes >= kWorthThreads)
+    return work_in_order(arrays.size(), 0, is_right, take, [](std::size_t) {});
+  for (std::size_t i = 0; i < arrays.size(); ++i) take(i, is_right(i, {}));
 }
 
 EncodedContainer::EncodedContainer(const ContainerFormat& format,

@@ -2,188 +2,170 @@
 #include "sparse_mocap/database/database_content.hpp"
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <list>
 #include <set>
 #include <span>
 #include <stdexcept>
 #include <utility>
 
+#include "sparse_mocap/base/checksum.hpp"
 #include "sparse_mocap/database/container.hpp"
+#include "sparse_mocap/database/database_metadata.hpp"
 #include "sparse_mocap/database/motion_database.hpp"
-#include "sparse_mocap/sensors/filter.hpp"
+#include "sparse_mocap/database/sections.hpp"
 
 namespace sparse_mocap {
 namespace {
 
-using nlohmann::json;
-using Rows = DatabaseRows::Rows;
-
-// File names need not be UTF-8; what is not is replaced, so that the header is sound JSON.
-std::string dumped(const json& value) {
-  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+template <typename Matrix>
+std::span<const std::byte> bytes_of(const Matrix& rows) {
+  return std::as_bytes(std::span(rows.data(), static_cast<std::size_t>(rows.size())));
 }
 
-json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+// The database's own arrays, in pieces that view the content and what is kept here, in the order in
+// which MotionDatabase::rows_hash takes their checksums.
+class Arrays {
+ public:
+  explicit Arrays(const DatabaseContent& content) : content_(content) {
+    add_packed("angles", [](const PackedRows& rows) { return &rows.angles; });
+    add_packed("positions", [](const PackedRows& rows) { return &rows.positions; });
+    add("root_motion", [](const PackedRows& rows) { return &rows.root_motion; });
+    add("contacts", [](const PackedRows& rows) { return &rows.contacts; });
+    for (std::size_t s = 0; s < content.site_names.size(); ++s) {
+      const auto add_of_site = [&](const char* name, PackedArray PackedSite::*member) {
+        add_packed(site_array(content.site_names[s], name),
+                   [&](const PackedRows& rows) { return &(rows.sites.at(s).*member); });
+      };
+      add_of_site("specific_force_pivot", &PackedSite::specific_force_pivot);
+      add_of_site("specific_force_end", &PackedSite::specific_force_end);
+      add_of_site("angular_velocity", &PackedSite::angular_velocity);
+      add_of_site("up", &PackedSite::gravity_direction);
+    }
+  }
 
-json skeleton_json(const Skeleton& skeleton) {
-  json joints = json::array();
-  for (const auto& joint : skeleton.joints())
-    joints.push_back({{"name", joint.name}, {"bone_m", vector_json(joint.bone)}});
-  return joints;
-}
+  const std::vector<ArrayInPieces>& arrays() const { return arrays_; }
 
-json clip_json(const Clip& clip, int begin, int end) {
-  json entry{{"name", clip.name},
-             {"actor", clip.actor},
-             {"class", clip.motion_class},
-             {"source", clip.source},
-             {"source_hash", clip.source_hash},
-             {"mirrored", clip.is_mirrored},
-             {"reversed", clip.is_reversed},
-             {"tempo", clip.tempo},
-             {"begin", begin},
-             {"end", end},
-             {"source_frames", clip.source_frames},
-             {"source_rate_hz", clip.source_rate_hz}};
-  const auto put = [&](const char* key, const std::string& value) {
-    if (!value.empty()) entry[key] = value;
-  };
-  put("skeleton", clip.skeleton);
-  put("skeleton_hash", clip.skeleton_hash);
-  put("origin", clip.origin);
-  put("license", clip.license);
-  if (!clip.warnings.empty()) entry["warnings"] = clip.warnings;
-  return entry;
-}
+ private:
+  template <typename RowsOf>
+  void add(const std::string& name, const RowsOf& rows_of) {
+    using Scalar = std::remove_cvref_t<decltype(*rows_of(content_.clip_rows[0])->data())>;
+    ArrayInPieces array{{name, kElementTypeOf<Scalar>, {0, 0}, {}}, {}};
+    for (const auto& rows : content_.clip_rows) {
+      const auto& part = *rows_of(rows);
+      array.tensor.shape[0] += static_cast<std::size_t>(part.rows());
+      array.tensor.shape[1] = static_cast<std::size_t>(part.cols());
+      array.pieces.push_back(bytes_of(part));
+    }
+    arrays_.push_back(std::move(array));
+  }
 
-json clips_json(const DatabaseContent& content) {
-  json clips = json::array();
+  template <typename ArrayOf>
+  void add_packed(const std::string& name, const ArrayOf& array_of) {
+    add(name, [&](const PackedRows& rows) { return &array_of(rows)->values; });
+    std::vector<float>& scales = scales_.emplace_back();
+    for (const auto& rows : content_.clip_rows) scales.push_back(array_of(rows)->scale);
+    arrays_.push_back({{scale_name(name), ElementType::f32, {scales.size(), 1}, {}},
+                       {std::as_bytes(std::span(scales))}});
+  }
+
+  const DatabaseContent& content_;
+  std::list<std::vector<float>> scales_;
+  std::vector<ArrayInPieces> arrays_;
+};
+
+std::map<std::string, std::string> own_metadata(const DatabaseContent& content) {
+  DatabaseMetadata metadata{content.skeleton, content.rate_hz,    content.clips,
+                            content.sources,  content.site_names, content.build_info};
   int begin = 0;
-  for (std::size_t c = 0; c < content.clips.size(); ++c) {
-    const int end = begin + content.clip_rows[c].num_frames();
-    clips.push_back(clip_json(content.clips[c], begin, end));
-    begin = end;
+  for (std::size_t c = 0; c < metadata.clips.size(); ++c) {
+    metadata.clips[c].begin = begin;
+    metadata.clips[c].end = begin += content.clip_rows[c].num_frames();
   }
-  return clips;
+  return text_of(metadata);
 }
 
-json left_out_json(const std::vector<LeftOut>& files) {
-  json entries = json::array();
-  for (const auto& file : files)
-    entries.push_back({{"source", file.source}, {"reason", file.reason}});
-  return entries;
+// As MotionDatabase::rows_hash.
+std::string rows_hash(const std::map<std::string, std::string>& metadata,
+                      const std::vector<ArrayInPieces>& arrays) {
+  std::string all;
+  for (const auto& array : arrays) all += checksum_of_pieces(array.pieces);
+  for (const char* key : {"skeleton", "clips", "rate_hz"}) all += metadata.at(key);
+  return checksum(std::as_bytes(std::span(all)));
 }
 
-json sources_json(const SourceRecord& sources) {
-  json skeletons = json::array();
-  for (const auto& skeleton : sources.skeletons)
-    skeletons.push_back({{"id", skeleton.id},
-                         {"num_joints", skeleton.num_joints},
-                         {"joints", skeleton.joints},
-                         {"unit_scale", skeleton.unit_scale}});
-  return {{"skeletons", skeletons},
-          {"skipped", left_out_json(sources.skipped)},
-          {"duplicates", left_out_json(sources.duplicates)}};
-}
-
-using Piece = std::span<const std::byte>;
-
-ArrayInPieces gathered(const char* name, const DatabaseContent& content,
-                       Rows DatabaseRows::*member) {
-  ArrayInPieces array{{name, ElementType::f32, {0, 0}, {}}, {}};
-  for (const auto& rows : content.clip_rows) {
-    const Rows& part = rows.*member;
-    array.tensor.shape[0] += static_cast<std::size_t>(part.rows());
-    array.tensor.shape[1] = static_cast<std::size_t>(part.cols());
-    array.pieces.push_back(
-        std::as_bytes(std::span(part.data(), static_cast<std::size_t>(part.size()))));
-  }
-  return array;
-}
-
-std::vector<std::int32_t> clip_indices(const DatabaseContent& content) {
-  std::vector<std::int32_t> indices;
-  for (std::size_t c = 0; c < content.clip_rows.size(); ++c)
-    indices.insert(indices.end(), static_cast<std::size_t>(content.clip_rows[c].num_frames()),
-                   static_cast<std::int32_t>(c));
-  return indices;
-}
-
-std::map<std::string, std::string> metadata_of(const DatabaseContent& content) {
-  std::map<std::string, std::string> metadata = content.further.metadata;
-  metadata["rate_hz"] = json(content.rate_hz).dump();
-  metadata["filter"] = json{{"kind", "gaussian"},
-                            {"marker_sigma_s", kMarkerFilter.sigma_s},
-                            {"reading_sigma_s", kReadingFilter.sigma_s}}
-                           .dump();
-  metadata["skeleton"] = skeleton_json(content.skeleton).dump();
-  metadata["sites"] = dumped(content.site_names);
-  metadata["clips"] = dumped(clips_json(content));
-  metadata["sources"] = dumped(sources_json(content.sources));
-  metadata["build"] = content.build_info;
-  return metadata;
-}
-
-std::vector<ArrayInPieces> all_arrays(const DatabaseContent& content,
-                                      const std::vector<std::int32_t>& indices) {
-  std::vector<ArrayInPieces> arrays{
-      gathered("angles", content, &DatabaseRows::angles),
-      gathered("positions", content, &DatabaseRows::positions),
-      gathered("root_motion", content, &DatabaseRows::root_motion),
-      gathered("contacts", content, &DatabaseRows::contacts),
-      gathered("specific_force_pivot", content, &DatabaseRows::specific_force_pivot),
-      gathered("specific_force_end", content, &DatabaseRows::specific_force_end),
-      gathered("angular_velocity", content, &DatabaseRows::angular_velocity),
-      gathered("up", content, &DatabaseRows::gravity_direction),
-      {{"clip_index", ElementType::i32, {indices.size(), 1}, {}},
-       {std::as_bytes(std::span(indices))}}};
-  for (const auto& tensor : content.further.tensors) arrays.push_back({tensor, {tensor.bytes}});
-  return arrays;
+void check(const DatabaseContent& content) {
+  if (content.clips.empty() || content.clips.size() != content.clip_rows.size())
+    throw std::invalid_argument("a database's clips and their rows do not correspond");
+  for (const auto& rows : content.clip_rows)
+    if (rows.sites.size() != content.site_names.size())
+      throw std::invalid_argument("a database's rows do not correspond to its sites");
 }
 
 // A file in pieces that view the content and what is kept here.
 class EncodedDatabase {
  public:
   explicit EncodedDatabase(const DatabaseContent& content)
-      : indices_(clip_indices(content)),
-        container_(kDatabaseFormat, metadata_of(content), all_arrays(content, indices_)) {}
+      : arrays_(content), container_(encoded(content, arrays_.arrays())) {}
 
   const EncodedContainer& container() const { return container_; }
 
  private:
-  std::vector<std::int32_t> indices_;
+  static EncodedContainer encoded(const DatabaseContent& content,
+                                  std::vector<ArrayInPieces> arrays) {
+    auto metadata = own_metadata(content);
+    SafetensorsView further = content.further;
+    remove_stale_sections(further, rows_hash(metadata, arrays));
+    metadata.merge(further.metadata);
+    for (const auto& tensor : further.tensors) arrays.push_back({tensor, {tensor.bytes}});
+    return {kDatabaseFormat, std::move(metadata), std::move(arrays)};
+  }
+
+  Arrays arrays_;
   EncodedContainer container_;
 };
 
-void check(const DatabaseContent& content) {
-  if (content.clips.empty() || content.clips.size() != content.clip_rows.size())
-    throw std::invalid_argument("a database's clips and their rows do not correspond");
+PackedArray packed_rows_of(const ScaledRows& rows, const Clip& clip) {
+  return {rows.values().middleRows(clip.begin, clip.num_frames()), rows.scale(clip.begin)};
+}
+
+PackedRows packed_rows_of(const MotionDatabase& database, const Clip& clip) {
+  PackedRows rows{packed_rows_of(database.angles(), clip),
+                  packed_rows_of(database.positions(), clip),
+                  database.root_motion().middleRows(clip.begin, clip.num_frames()),
+                  database.contacts().middleRows(clip.begin, clip.num_frames()),
+                  {}};
+  for (std::size_t s = 0; s < database.site_names().size(); ++s) {
+    const SiteRows& site = database.site(s);
+    rows.sites.push_back({packed_rows_of(site.specific_force_pivot, clip),
+                          packed_rows_of(site.specific_force_end, clip),
+                          packed_rows_of(site.angular_velocity, clip),
+                          packed_rows_of(site.gravity_direction, clip)});
+  }
+  return rows;
 }
 
 }  // namespace
+
+std::string scale_name(const std::string& array) { return array + "/scale"; }
+
+std::string site_array(const std::string& site, const std::string& name) {
+  return "sites/" + site + "/" + name;
+}
 
 DatabaseContent database_content(const MotionDatabase& database) {
   DatabaseContent content{
       database.skeleton(), database.rate_hz(),    database.clips(),      {},
       database.sources(),  database.build_info(), database.site_names(), database.further(),
       database.bytes()};
-  for (const Clip& clip : database.clips()) {
-    const auto of_clip = [&](const FloatRows& rows) {
-      return Rows(rows.middleRows(clip.begin, clip.num_frames()));
-    };
-    content.clip_rows.push_back(
-        {of_clip(database.angles()), of_clip(database.positions()), of_clip(database.root_motion()),
-         of_clip(database.contacts()), of_clip(database.specific_force_pivot()),
-         of_clip(database.specific_force_end()), of_clip(database.angular_velocity()),
-         of_clip(database.gravity_direction())});
-  }
+  for (const Clip& clip : database.clips())
+    content.clip_rows.push_back(packed_rows_of(database, clip));
   return content;
 }
 
 void remove_clips(DatabaseContent& content,
                   const std::function<bool(std::size_t clip)>& is_unwanted) {
   std::vector<Clip> clips;
-  std::vector<DatabaseRows> clip_rows;
+  std::vector<PackedRows> clip_rows;
   std::set<std::string> skeletons;
   for (std::size_t c = 0; c < content.clips.size(); ++c) {
     if (is_unwanted(c)) continue;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "sparse_mocap/database/clip.hpp"
-#include "sparse_mocap/database/database_rows.hpp"
 #include "sparse_mocap/database/motion_database.hpp"
+#include "sparse_mocap/database/packed_rows.hpp"
 #include "sparse_mocap/database/safetensors.hpp"
 #include "sparse_mocap/motion/skeleton.hpp"
 
@@ -23,8 +23,8 @@ std::vector<std::string> all_site_names();
 struct DatabaseContent {
   Skeleton skeleton;
   double rate_hz = 25.0;
-  std::vector<Clip> clips;              // begin and end are set on writing
-  std::vector<DatabaseRows> clip_rows;  // one entry a clip
+  std::vector<Clip> clips;            // begin and end are set on writing
+  std::vector<PackedRows> clip_rows;  // one entry a clip
   SourceRecord sources;
   std::string build_info;  // JSON: options, counts, versions
   std::vector<std::string> site_names = all_site_names();
@@ -33,6 +33,10 @@ struct DatabaseContent {
   std::shared_ptr<const Bytes> further_bytes;
 };
 
+// How arrays are called in the file: the scales of one, and one of a site.
+std::string scale_name(const std::string& array);
+std::string site_array(const std::string& site, const std::string& name);
+
 // The content of an opened database.
 DatabaseContent database_content(const MotionDatabase& database);
 
@@ -40,11 +44,12 @@ DatabaseContent database_content(const MotionDatabase& database);
 void remove_clips(DatabaseContent& content,
                   const std::function<bool(std::size_t clip)>& is_unwanted);
 
-// The file as it will lie on disk. Throws std::invalid_argument when clips and their rows do not
-// correspond.
+// The file as it will lie on disk, without sections that were made from other rows. Throws
+// std::invalid_argument when clips and their rows do not correspond.
 std::vector<std::byte> encode_database(const DatabaseContent& content);
 
-// Writes it atomically, without a second copy of the rows. Throws std::filesystem_error.
+// Writes it atomically, without a second copy of the rows. Throws as encode_database and
+// std::filesystem_error.
 void write_database(const std::filesystem::path& path, const DatabaseContent& content);
 
 }  // namespace sparse_mocap

@@ -192,7 +192,7 @@ void Importer::know_clips(const DatabaseContent& content) {
   for (std::size_t c = 0; c < content.clips.size(); ++c) {
     const Clip& clip = content.clips[c];
     if (clip.is_copy() || replaced_.contains(clip.source)) continue;
-    finder_.add(static_cast<int>(known_sources_.size()), content.clip_rows[c]);
+    finder_.add(static_cast<int>(known_sources_.size()), unpacked(content.clip_rows[c]));
     known_sources_.push_back(clip.source);
   }
 }
@@ -235,7 +235,7 @@ void Importer::import(DatabaseContent& content, const CopyOptions& copies) {
 
 void Importer::take_in(const SourceFile& file, ImportedFile imported, DatabaseContent& content) {
   if (!options_.keep_duplicates) {
-    const DatabaseRows& rows = imported.clip_rows.front();
+    const DatabaseRows rows = unpacked(imported.clip_rows.front());
     if (const auto same = finder_.find(rows)) {
       leave_out(file, "the same motion as " + known_sources_[static_cast<std::size_t>(*same)]);
       return;

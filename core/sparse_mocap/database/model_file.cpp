@@ -46,18 +46,6 @@ int version_from(const std::string& text, const Container& container) {
   return version;
 }
 
-// Changes the further content of a database file, all else in it being kept as it lies there.
-void change_database(const std::filesystem::path& path,
-                     const std::function<void(const MotionDatabase&, SafetensorsView&)>& change) {
-  const FileLock lock(path);
-  const auto bytes = map_file(path);
-  const auto database = MotionDatabase::from_bytes(bytes, path);
-  const Container container(bytes->view(), path, kDatabaseFormat);
-  SafetensorsView content{container.metadata(), container.tensors()};
-  change(*database, content);
-  EncodedContainer(kDatabaseFormat, content.metadata, whole_arrays(content.tensors)).write(path);
-}
-
 }  // namespace
 
 Model model_from_bytes(std::span<const std::byte> file, const std::filesystem::path& path) {
@@ -88,6 +76,16 @@ std::vector<std::byte> encode_model(const Model& model) { return encoded(model).
 
 void write_model(const std::filesystem::path& path, const Model& model) {
   encoded(model).write(path);
+}
+
+void change_database(const std::filesystem::path& path,
+                     const std::function<void(const MotionDatabase&, SafetensorsView&)>& change) {
+  const FileLock lock(path);
+  const auto database = MotionDatabase::open(path);
+  const Container container(database->bytes()->view(), path, kDatabaseFormat);
+  SafetensorsView content{container.metadata(), container.tensors()};
+  change(*database, content);
+  EncodedContainer(kDatabaseFormat, content.metadata, whole_arrays(content.tensors)).write(path);
 }
 
 void store_model(const std::filesystem::path& database, const Model& model) {

@@ -3,11 +3,13 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "sparse_mocap/database/model.hpp"
+#include "sparse_mocap/database/motion_database.hpp"
 
 namespace sparse_mocap {
 
@@ -26,10 +28,17 @@ std::vector<std::byte> encode_model(const Model& model);
 // Writes it atomically. Throws std::filesystem_error, too.
 void write_model(const std::filesystem::path& path, const Model& model);
 
-// Puts a model into a motion database, in place of one that the same method has there; the file is
-// replaced atomically, and all else in it stays bit for bit. Throws FormatError (no sound
+// Puts a model into a motion database, in place of one that the same method has there, as
+// change_database does. Throws FormatError (no sound
 // database), std::invalid_argument (no sound model), std::filesystem_error.
 void store_model(const std::filesystem::path& database, const Model& model);
+
+// Changes the further content of a database file, which is replaced atomically; all else in it
+// stays bit for bit, but that a file of an older version becomes one of the newest. Throws
+// FormatError, and what change throws; the file is untouched then.
+void change_database(
+    const std::filesystem::path& path,
+    const std::function<void(const MotionDatabase& database, SafetensorsView& content)>& change);
 
 // Takes a method's model out of a motion database. Throws FormatError, also when there is none.
 void remove_model(const std::filesystem::path& database, const std::string& method);

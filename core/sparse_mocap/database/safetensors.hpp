@@ -44,6 +44,8 @@ inline constexpr ElementType kElementTypeOf = Scalar::is_no_element_type;
 template <>
 inline constexpr ElementType kElementTypeOf<std::uint8_t> = ElementType::u8;
 template <>
+inline constexpr ElementType kElementTypeOf<std::int16_t> = ElementType::i16;
+template <>
 inline constexpr ElementType kElementTypeOf<std::int32_t> = ElementType::i32;
 template <>
 inline constexpr ElementType kElementTypeOf<std::int64_t> = ElementType::i64;

@@ -88,12 +88,15 @@ std::vector<int> nearest_poses(const MotionDatabase& database, const Eigen::Matr
   std::vector<int> frames;
   for (Eigen::Index t = 0; t < positions.cols(); ++t) {
     const Eigen::VectorXf pose = positions.col(t).cast<float>();
-    const Eigen::VectorXf squared =
-        (database.positions().rowwise() - pose.transpose()).rowwise().squaredNorm();
     int best = -1;
-    for (int n = 0; n < database.num_frames(); ++n)
-      if (is_searched[static_cast<std::size_t>(n)] && (best < 0 || squared[n] < squared[best]))
-        best = n;
+    float least = 0.0F;
+    for (int n = 0; n < database.num_frames(); ++n) {
+      if (!is_searched[static_cast<std::size_t>(n)]) continue;
+      const float squared = (database.positions().row(n) - pose.transpose()).squaredNorm();
+      if (best >= 0 && squared >= least) continue;
+      best = n;
+      least = squared;
+    }
     frames.push_back(best);
   }
   return frames;

@@ -20,13 +20,13 @@ void require_distinct_sites(const std::vector<Sensor>& sensors) {
         throw ConfigError("two sensors at " + std::string(site_of(sensors[a].site).name));
 }
 
-Eigen::Index site_column(const MotionDatabase& database, int site) {
+const SiteRows& site_rows(const MotionDatabase& database, int site) {
   const auto& names = database.site_names();
   const auto at = std::find(names.begin(), names.end(), site_of(site).name);
   if (at == names.end())
     throw ConfigError("the motion database has no readings for " + std::string(site_of(site).name) +
                       "; build it again");
-  return static_cast<Eigen::Index>(3 * (at - names.begin()));
+  return database.site(static_cast<std::size_t>(at - names.begin()));
 }
 
 }  // namespace
@@ -53,15 +53,20 @@ bool is_on_leg(const Signal& signal) {
 FeatureRows database_signals(const MotionDatabase& database, std::span<const Signal> signals) {
   FeatureRows rows(database.num_frames(), static_cast<Eigen::Index>(3 * signals.size()));
   for (std::size_t s = 0; s < signals.size(); ++s) {
-    const Eigen::Index column = site_column(database, signals[s].site);
-    auto signal = rows.middleCols(static_cast<Eigen::Index>(3 * s), 3);
-    if (signals[s].channel == Channel::gravity_direction) {
-      signal = database.gravity_direction().middleCols(column, 3);
-      continue;
-    }
+    const SiteRows& site = site_rows(database, signals[s].site);
     const auto along = static_cast<float>(signals[s].position_along_bone);
-    signal = (1.0F - along) * database.specific_force_pivot().middleCols(column, 3) +
-             along * database.specific_force_end().middleCols(column, 3);
+    auto signal = rows.middleCols(static_cast<Eigen::Index>(3 * s), 3);
+    for (const Clip& clip : database.clips()) {
+      const auto of_clip = [&](const ScaledRows& scaled) {
+        return scaled.rows_of_clip(clip.begin, clip.num_frames());
+      };
+      if (signals[s].channel == Channel::gravity_direction)
+        signal.middleRows(clip.begin, clip.num_frames()) = of_clip(site.gravity_direction);
+      else
+        signal.middleRows(clip.begin, clip.num_frames()) =
+            (1.0F - along) * of_clip(site.specific_force_pivot) +
+            along * of_clip(site.specific_force_end);
+    }
   }
   return rows;
 }

@@ -67,16 +67,22 @@ class EditDatabase : public ::testing::Test {
   static bool same_rows(const MotionDatabase& a, std::size_t ca, const MotionDatabase& b,
                         std::size_t cb) {
     const Clip &x = a.clips()[ca], &y = b.clips()[cb];
-    const auto same = [&](const FloatRows& left, const FloatRows& right) {
+    const auto same = [&](const auto& left, const auto& right) {
       return x.num_frames() == y.num_frames() &&
              left.middleRows(x.begin, x.num_frames()) == right.middleRows(y.begin, y.num_frames());
     };
-    return same(a.angles(), b.angles()) && same(a.positions(), b.positions()) &&
-           same(a.root_motion(), b.root_motion()) && same(a.contacts(), b.contacts()) &&
-           same(a.specific_force_pivot(), b.specific_force_pivot()) &&
-           same(a.specific_force_end(), b.specific_force_end()) &&
-           same(a.angular_velocity(), b.angular_velocity()) &&
-           same(a.gravity_direction(), b.gravity_direction());
+    const auto scaled = [&](const ScaledRows& left, const ScaledRows& right) {
+      return same(left.values(), right.values()) && left.scale(x.begin) == right.scale(y.begin);
+    };
+    bool are_same = scaled(a.angles(), b.angles()) && scaled(a.positions(), b.positions()) &&
+                    same(a.root_motion(), b.root_motion()) && same(a.contacts(), b.contacts());
+    for (std::size_t s = 0; s < a.site_names().size(); ++s)
+      are_same = are_same &&
+                 scaled(a.site(s).specific_force_pivot, b.site(s).specific_force_pivot) &&
+                 scaled(a.site(s).specific_force_end, b.site(s).specific_force_end) &&
+                 scaled(a.site(s).angular_velocity, b.site(s).angular_velocity) &&
+                 scaled(a.site(s).gravity_direction, b.site(s).gravity_direction);
+    return are_same;
   }
   static std::vector<std::string> sources_of(const MotionDatabase& database) {
     std::vector<std::string> sources;

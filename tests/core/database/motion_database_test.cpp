@@ -87,20 +87,25 @@ TEST(MotionDatabase, GivesBackWhatWasWritten) {
   EXPECT_EQ(database->num_frames(), 25 + 19);
   for (std::size_t c = 0; c < 2; ++c) {
     const Clip& clip = database->clips()[c];
-    const DatabaseRows& rows = content.clip_rows[c];
+    const PackedRows& rows = content.clip_rows[c];
     EXPECT_EQ(clip.name, content.clips[c].name);
     EXPECT_EQ(clip.num_frames(), rows.num_frames());
-    const auto same = [&](const FloatRows& read, const DatabaseRows::Rows& written) {
-      EXPECT_EQ(read.middleRows(clip.begin, clip.num_frames()), written);
+    const auto same = [&](const ScaledRows& read, const PackedArray& written) {
+      EXPECT_EQ(read.values().middleRows(clip.begin, clip.num_frames()), written.values);
+      EXPECT_EQ(read.scale(clip.begin), written.scale);
+      EXPECT_EQ(read.row(clip.begin + 1), unpacked(written).row(1));
+      EXPECT_EQ(read(clip.begin + 2, 1), unpacked(written)(2, 1));
     };
     same(database->angles(), rows.angles);
     same(database->positions(), rows.positions);
-    same(database->root_motion(), rows.root_motion);
-    same(database->contacts(), rows.contacts);
-    same(database->specific_force_pivot(), rows.specific_force_pivot);
-    same(database->specific_force_end(), rows.specific_force_end);
-    same(database->angular_velocity(), rows.angular_velocity);
-    same(database->gravity_direction(), rows.gravity_direction);
+    EXPECT_EQ(database->root_motion().middleRows(clip.begin, clip.num_frames()), rows.root_motion);
+    EXPECT_EQ(database->contacts().middleRows(clip.begin, clip.num_frames()), rows.contacts);
+    for (std::size_t s = 0; s < rows.sites.size(); ++s) {
+      same(database->site(s).specific_force_pivot, rows.sites[s].specific_force_pivot);
+      same(database->site(s).specific_force_end, rows.sites[s].specific_force_end);
+      same(database->site(s).angular_velocity, rows.sites[s].angular_velocity);
+      same(database->site(s).gravity_direction, rows.sites[s].gravity_direction);
+    }
     for (int n = clip.begin; n < clip.end; ++n)
       EXPECT_EQ(database->clip_index(n), static_cast<int>(c));
   }
@@ -112,6 +117,9 @@ TEST(MotionDatabase, RefusesContentThatDoesNotCorrespond) {
   EXPECT_REFUSED(std::invalid_argument, "do not correspond", encode_database(content));
   content.clips.resize(2);
   EXPECT_REFUSED(std::invalid_argument, "do not correspond", encode_database(content));
+  content = small_content(5);
+  content.clip_rows[0].sites.pop_back();
+  EXPECT_REFUSED(std::invalid_argument, "do not correspond to its sites", encode_database(content));
 }
 
 TEST(MotionDatabase, RefusesMissingFilesAndFolders) {
@@ -148,15 +156,16 @@ TEST(MotionDatabase, RefusesAFileWithAnyByteDamaged) {
 
 TEST(MotionDatabase, NamesTheArrayThatIsDamaged) {
   auto file = encode_database(small_content(3));
-  file[file.size() - 20] ^= std::byte{1};
-  EXPECT_TRUE(contains(complaint(file), "the array 'up' does not match its checksum"));
+  file[file.size() - 3] ^= std::byte{1};
+  EXPECT_TRUE(contains(complaint(file), "the array 'contacts' does not match its checksum"));
 }
 
 TEST(MotionDatabase, RefusesAnotherVersionNamingBoth) {
   const auto file = forged(encode_database(small_content(3)),
                            [](Metadata& metadata, Arrays&) { metadata["format_version"] = "999"; });
-  EXPECT_TRUE(contains(complaint(file), "format version 999, and this program reads version " +
-                                            std::to_string(kDatabaseFormatVersion)))
+  EXPECT_TRUE(
+      contains(complaint(file), "format version 999, and this program reads versions 1 to " +
+                                    std::to_string(kDatabaseFormatVersion)))
       << complaint(file);
 }
 
@@ -174,9 +183,11 @@ TEST(MotionDatabase, RefusesClaimsThatAreChecksummedButFalse) {
   expect("rate_hz", "1e9", "frame rate");
   expect("rate_hz", "fast", "metadata is damaged");
   expect("sites", "[]", "no sensor sites");
-  expect("sites", "[\"head\"]", "columns");
+  expect("sites", "[\"a\"]", "the array 'sites/a/specific_force_pivot' is missing");
+  expect("sites", "[\"head\",\"head\"]", "a sensor site twice");
   expect("skeleton", "[]", "21 joints");
-  expect("clips", "[]", "without a clip");
+  expect("clips", "[]", "no clips");
+  expect("sections", "[]", "the list of its sections is damaged");
   expect("clips", "{", "metadata is damaged");
   expect("clips", "[{\"name\":\"a\"}]", "metadata is damaged");
 }
@@ -194,10 +205,6 @@ TEST(MotionDatabase, RefusesClipsThatDoNotCoverTheFrames) {
   EXPECT_EQ(with_range(0, 6), "");
   for (const auto& [begin, end] : {std::pair{1, 6}, {0, 5}, {0, 7}, {0, 0}, {3, 2}, {-1, 6}})
     EXPECT_NE(with_range(begin, end), "") << begin << " " << end;
-  EXPECT_TRUE(contains(
-      complaint(
-          forged(file, [](Metadata&, Arrays& arrays) { arrays["clip_index"][4] = std::byte{1}; })),
-      "names another clip"));
 }
 
 // The content with one source skeleton, and what a file says of where it comes from.
@@ -290,10 +297,10 @@ TEST(MotionDatabase, NamesFilesThatAreNotUtf8) {
 
 TEST(MotionDatabase, RefusesDirectionsThatAreNoDirections) {
   const auto file = encode_database(small_content(4));
-  const float bad = 0.5F;
+  const std::int16_t bad = 0x0101;
   EXPECT_TRUE(contains(complaint(forged(file,
                                         [&](Metadata&, Arrays& arrays) {
-                                          std::memcpy(arrays["up"].data() + 12, &bad, 4);
+                                          std::memcpy(arrays["sites/head/up"].data() + 2, &bad, 2);
                                         })),
                        "a direction has not unit length"));
 }
@@ -302,15 +309,24 @@ TEST(MotionDatabase, RefusesValuesThatAreNoNumbers) {
   const auto file = encode_database(small_content(4));
   for (const float bad :
        {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity()}) {
-    for (const std::string name :
-         {"angles", "positions", "root_motion", "contacts", "up", "specific_force_pivot",
-          "specific_force_end", "angular_velocity"}) {
-      const auto text = complaint(forged(file, [&](Metadata&, Arrays& arrays) {
+    const auto with_bad = [&](const std::string& name) {
+      return complaint(forged(file, [&](Metadata&, Arrays& arrays) {
         std::memcpy(arrays[name].data() + arrays[name].size() - 4, &bad, 4);
       }));
-      EXPECT_TRUE(contains(text, "not a number")) << name << text;
-    }
+    };
+    EXPECT_TRUE(contains(with_bad("root_motion"), "not a number"));
+    for (const std::string name : {"angles", "positions", "sites/head/up"})
+      EXPECT_TRUE(
+          contains(with_bad(name + "/scale"), "a scale of the array '" + name + "' is impossible"));
   }
+}
+
+TEST(MotionDatabase, RefusesContactsThatAreNeither) {
+  const auto file = encode_database(small_content(4));
+  EXPECT_TRUE(
+      contains(complaint(forged(
+                   file, [](Metadata&, Arrays& arrays) { arrays["contacts"][5] = std::byte{2}; })),
+               "a contact is neither 0 nor 1"));
 }
 
 TEST(MotionDatabase, KeepsItsContentWhenTheFileIsReplaced) {
@@ -322,9 +338,9 @@ TEST(MotionDatabase, KeepsItsContentWhenTheFileIsReplaced) {
   };
   write(encode_database(small_content(30)));
   const auto database = MotionDatabase::open(path);
-  const DatabaseRows::Rows before = database->angles();
+  const DatabaseRows::Rows before = database->angles().all();
   write(encode_database(small_content(4)));
-  EXPECT_EQ(DatabaseRows::Rows(database->angles()), before);
+  EXPECT_EQ(database->angles().all(), before);
   EXPECT_EQ(MotionDatabase::open(path)->num_frames(), 4);
 }
 

@@ -15,13 +15,15 @@ class Baselines : public ::testing::Test {
   Baselines() {
     const Motion still = testing::resting_motion(testing::template_skeleton(), 4, 25.0);
     DatabaseContent content = testing::content_of({still, still, still}, 25.0);
-    for (std::size_t n = 0; n < 12; ++n) {
-      DatabaseRows& rows = content.clip_rows[n / 4];
-      const auto row = static_cast<Eigen::Index>(n % 4);
-      rows.specific_force_end.row(row).setConstant(kValue[n]);
-      rows.specific_force_pivot.row(row).setConstant(-100.0F);
-      rows.positions.row(row).setConstant(10.0F * kValue[n]);
-    }
+    for (std::size_t clip = 0; clip < 3; ++clip)
+      testing::change_rows(content, clip, [&](DatabaseRows& rows) {
+        for (Eigen::Index row = 0; row < 4; ++row) {
+          const float value = kValue[4 * clip + static_cast<std::size_t>(row)];
+          rows.specific_force_end.row(row).setConstant(value);
+          rows.specific_force_pivot.row(row).setConstant(-100.0F);
+          rows.positions.row(row).setConstant(10.0F * value);
+        }
+      });
     database_ = testing::database_of(content);
   }
 

@@ -84,16 +84,17 @@ TEST(Gather, LooksPosesUpAtTheirFrames) {
 
 TEST(Gather, PutsAnglesNearTheBestPathAndThatNearThePoseGiven) {
   DatabaseContent content = content_of({swaying_motion(template_skeleton(), 1, 10, 25.0)}, 25.0);
-  for (int n = 0; n < 10; ++n)
-    content.clip_rows[0].angles.row(n).setConstant(
-        static_cast<float>(0.1 + 0.01 * n + 2.0 * kPi * (n % 3 - 1)));
+  testing::change_rows(content, 0, [](DatabaseRows& rows) {
+    for (int n = 0; n < 10; ++n)
+      rows.angles.row(n).setConstant(0.125F + static_cast<float>(n) / 64.0F);
+  });
   const auto database = database_of(content);
   const Eigen::VectorXd near = Eigen::VectorXd::Constant(43, 4.0 * kPi);
   std::vector<Path> paths;
   for (int n = 0; n < 10; ++n) paths.push_back({n, 1.0, 1, -1});
   const auto found = gather(*database, paths, Eigen::VectorXd::Constant(10, 0.1), &near);
   for (int n = 0; n < 10; ++n)
-    EXPECT_LT((found.angles.col(n).array() - 4.0 * kPi - 0.1 - 0.01 * n).abs().maxCoeff(), 1e-5);
+    EXPECT_LT((found.angles.col(n).array() - 4.0 * kPi - 0.125 - n / 64.0).abs().maxCoeff(), 1e-5);
 }
 
 }  // namespace

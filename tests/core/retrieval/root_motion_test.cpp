@@ -65,11 +65,13 @@ TEST(RootRatesOf, NeighboursAreTheirWeightedMeans) {
   using namespace root_motion_column;
   DatabaseContent content = testing::content_of(
       {testing::swaying_motion(testing::template_skeleton(), 1, 10, 25.0)}, 25.0);
-  for (int n = 0; n < 10; ++n) {
-    const auto x = static_cast<float>(n);
-    content.clip_rows[0].root_motion.row(n) << 0.1F * x, 1.0F + x, -0.5F * x, 0.9F;
-    content.clip_rows[0].contacts.row(n) << (n < 5 ? 1.0F : 0.0F), 1.0F;
-  }
+  testing::change_rows(content, 0, [](DatabaseRows& rows) {
+    for (int n = 0; n < 10; ++n) {
+      const auto x = static_cast<float>(n);
+      rows.root_motion.row(n) << 0.1F * x, 1.0F + x, -0.5F * x, 0.9F;
+      rows.contacts.row(n) << (n < 5 ? 1.0F : 0.0F), 1.0F;
+    }
+  });
   const auto database = testing::database_of(content);
   Neighbourhood neighbours;
   neighbours.paths = {{2, 1.0, 1, -1}, {4, 1.0, 1, -1}, {8, 1.0, 1, -1}};

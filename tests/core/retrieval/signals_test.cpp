@@ -64,15 +64,15 @@ TEST(DatabaseSignals, AreThoseOfTheSensorsInTheirOrderAndPosition) {
                                     {find_site("left_ankle"), 0.25, kInertial}};
   const FeatureRows rows = database_signals(*database, compared_signals(sensors, true));
   ASSERT_EQ(rows.cols(), 9);
+  const SiteRows& head = database->site(static_cast<std::size_t>(find_site("head")));
+  const SiteRows& ankle = database->site(static_cast<std::size_t>(find_site("left_ankle")));
   for (int n = 0; n < database->num_frames(); ++n) {
     for (int k = 0; k < 3; ++k) {
-      EXPECT_EQ(rows(n, k), database->specific_force_end()(n, 3 * find_site("head") + k));
-      const int column = 3 * find_site("left_ankle") + k;
+      EXPECT_EQ(rows(n, k), head.specific_force_end(n, k));
       EXPECT_NEAR(rows(n, 3 + k),
-                  0.75F * database->specific_force_pivot()(n, column) +
-                      0.25F * database->specific_force_end()(n, column),
+                  0.75F * ankle.specific_force_pivot(n, k) + 0.25F * ankle.specific_force_end(n, k),
                   1e-5F);
-      EXPECT_EQ(rows(n, 6 + k), database->gravity_direction()(n, column));
+      EXPECT_EQ(rows(n, 6 + k), ankle.gravity_direction(n, k));
     }
   }
 }

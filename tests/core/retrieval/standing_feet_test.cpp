@@ -18,7 +18,9 @@ using namespace standard_joint;
 std::shared_ptr<const MotionDatabase> half_standing() {
   DatabaseContent content = testing::content_of(
       {testing::swaying_motion(testing::template_skeleton(), 1, 20, 25.0)}, 25.0);
-  for (int n = 0; n < 20; ++n) content.clip_rows[0].contacts.row(n) << (n < 10 ? 1.0F : 0.0F), 1.0F;
+  testing::change_rows(content, 0, [](DatabaseRows& rows) {
+    for (int n = 0; n < 20; ++n) rows.contacts.row(n) << (n < 10 ? 1.0F : 0.0F), 1.0F;
+  });
   return testing::database_of(content);
 }
 

@@ -127,25 +127,30 @@ Violations check_database(const MotionDatabase& database) {
   auto violations = check_skeleton(database.skeleton());
   Checks checks;
   const auto frames = static_cast<Eigen::Index>(database.num_frames());
-  const auto site_columns = static_cast<Eigen::Index>(3 * database.site_names().size());
   checks.require(frames > 0, "there are no frames");
   checks.require(database.rate_hz() >= 1.0 && database.rate_hz() <= 1000.0, "the rate is odd");
   checks.require(!database.site_names().empty(), "there are no sites");
-  const auto check_rows = [&](const char* name, const FloatRows& rows, Eigen::Index columns) {
+  const auto check_rows = [&](const char* name, const auto& rows, Eigen::Index columns) {
     checks.require(rows.rows() == frames && rows.cols() == columns,
                    std::string(name) + " has another size");
-    checks.require(rows.allFinite(), std::string(name) + " has a value that is not finite");
   };
-  check_rows("angles", database.angles(), database.skeleton().num_angles());
-  check_rows("positions", database.positions(), 3 * database.skeleton().num_joints());
+  const auto check_scaled = [&](const char* name, const ScaledRows& rows, Eigen::Index columns) {
+    check_rows(name, rows, columns);
+    checks.require(rows.all().allFinite(), std::string(name) + " has a value that is not finite");
+  };
+  check_scaled("angles", database.angles(), database.skeleton().num_angles());
+  check_scaled("positions", database.positions(), 3 * database.skeleton().num_joints());
   check_rows("root_motion", database.root_motion(), root_motion_column::count);
+  checks.require(database.root_motion().allFinite(), "root_motion has a value that is not finite");
   check_rows("contacts", database.contacts(), 2);
-  check_rows("specific_force_pivot", database.specific_force_pivot(), site_columns);
-  check_rows("specific_force_end", database.specific_force_end(), site_columns);
-  check_rows("angular_velocity", database.angular_velocity(), site_columns);
-  check_rows("up", database.gravity_direction(), site_columns);
-  for (Eigen::Index at = 0; at + 2 < database.gravity_direction().cols(); at += 3) {
-    const Eigen::ArrayXf lengths = database.gravity_direction().middleCols(at, 3).rowwise().norm();
+  checks.require((database.contacts().array() <= 1).all(), "a contact is neither 0 nor 1");
+  for (std::size_t s = 0; s < database.site_names().size(); ++s) {
+    const SiteRows& site = database.site(s);
+    check_scaled("specific_force_pivot", site.specific_force_pivot, 3);
+    check_scaled("specific_force_end", site.specific_force_end, 3);
+    check_scaled("angular_velocity", site.angular_velocity, 3);
+    check_scaled("up", site.gravity_direction, 3);
+    const Eigen::ArrayXf lengths = site.gravity_direction.all().rowwise().norm();
     checks.require(((lengths - 1.0F).abs() < 2e-3F).all(), "a direction has not unit length");
   }
   int frame = 0;

@@ -59,7 +59,7 @@ DatabaseContent content_of(const std::vector<Motion>& motions, double rate_hz) {
     clip.source = name + ".bvh";
     clip.source_hash = "0123456789abcdef";
     content.clips.push_back(clip);
-    content.clip_rows.push_back(database_rows(motions[c], rate_hz));
+    content.clip_rows.push_back(packed(database_rows(motions[c], rate_hz)));
   }
   return content;
 }
@@ -88,19 +88,19 @@ std::vector<Reading> readings_of(const MotionDatabase& database, int clip,
     reading.time_s = (frame - wanted.begin) * database.frame_time_s();
     for (std::size_t s = 0; s < sensors.size(); ++s) {
       const auto at = static_cast<Eigen::Index>(s);
-      const Eigen::Index column = 3 * sensors[s].site;
-      const auto row = [&](const FloatRows& rows) -> Vec3 {
-        return rows.row(frame).segment<3>(column).transpose().cast<double>();
+      const SiteRows& site = database.site(static_cast<std::size_t>(sensors[s].site));
+      const auto row = [&](const ScaledRows& rows) -> Vec3 {
+        return rows.row(frame).transpose().cast<double>();
       };
-      const Vec3 pivot = row(database.specific_force_pivot());
-      const Vec3 end = row(database.specific_force_end());
+      const Vec3 pivot = row(site.specific_force_pivot);
+      const Vec3 end = row(site.specific_force_end);
       const Channels channels = sensors[s].channels;
       if (channels.has(Channel::specific_force))
         reading.specific_force.col(at) = pivot + sensors[s].position_along_bone * (end - pivot);
       if (channels.has(Channel::angular_velocity))
-        reading.angular_velocity.col(at) = row(database.angular_velocity());
+        reading.angular_velocity.col(at) = row(site.angular_velocity);
       if (channels.has(Channel::gravity_direction))
-        reading.gravity_direction.col(at) = row(database.gravity_direction());
+        reading.gravity_direction.col(at) = row(site.gravity_direction);
     }
     readings.push_back(reading);
   }

@@ -26,6 +26,14 @@ Motion swaying_motion(const Skeleton& skeleton, unsigned seed, int frames, doubl
 
 // The database of motions on one standard skeleton, as the builder would make it, and its bytes.
 DatabaseContent content_of(const std::vector<Motion>& motions, double rate_hz);
+// Changes the rows of a clip as if its motion had given others.
+template <typename Change>
+void change_rows(DatabaseContent& content, std::size_t clip, const Change& change) {
+  DatabaseRows rows = unpacked(content.clip_rows[clip]);
+  change(rows);
+  content.clip_rows[clip] = packed(rows);
+}
+
 std::shared_ptr<const MotionDatabase> database_of(const DatabaseContent& content);
 std::shared_ptr<const MotionDatabase> database_of(const std::vector<Motion>& motions,
                                                   double rate_hz = 25.0);

@@ -15,7 +15,8 @@ using testing::database_of;
 using testing::swaying_motion;
 using testing::template_skeleton;
 
-// Two clips of ten frames; position row n of a clip is p + v n dt + a (n dt)^2 / 2.
+// Two clips of ten frames, kept within 0.06 mm; position row n of a clip is p + v n dt + a (n dt)^2
+// / 2.
 class Derivatives : public ::testing::Test {
  protected:
   static constexpr double kDt = 0.04;
@@ -25,9 +26,10 @@ class Derivatives : public ::testing::Test {
                                           swaying_motion(template_skeleton(), 2, 10, 25.0)},
                                          25.0);
     for (int clip = 0; clip < 2; ++clip)
-      for (int n = 0; n < 10; ++n)
-        content.clip_rows[static_cast<std::size_t>(clip)].positions.row(n) =
-            position(clip, n).transpose().cast<float>();
+      testing::change_rows(content, static_cast<std::size_t>(clip), [&](DatabaseRows& rows) {
+        for (int n = 0; n < 10; ++n)
+          rows.positions.row(n) = position(clip, n).transpose().cast<float>();
+      });
     database_ = database_of(content);
   }
 
@@ -51,8 +53,8 @@ TEST_F(Derivatives, FindsVelocitiesAndAccelerationsOfAParabolaInsideItsClip) {
     for (int n = 0; n < 10; ++n) {
       kinematics_at(*database_, 10 * clip + n, v, a);
       const double centre = std::clamp(n, 1, 8);  // the ends take their neighbour's
-      EXPECT_LT((v - velocity(clip, centre)).cwiseAbs().maxCoeff(), 1e-4);
-      EXPECT_LT((a - acceleration(clip)).cwiseAbs().maxCoeff(), 1e-2);
+      EXPECT_LT((v - velocity(clip, centre)).cwiseAbs().maxCoeff(), 2e-3);
+      EXPECT_LT((a - acceleration(clip)).cwiseAbs().maxCoeff(), 0.16);
     }
   }
 }
@@ -63,12 +65,12 @@ TEST_F(Derivatives, LooksEveryQuantityUpAtItsFrame) {
   const PathDerivatives found = path_derivatives(*database_, paths);
   const auto expect = [&](Eigen::Index i, int clip, double n, double before) {
     EXPECT_LT((found.velocities.col(i) - velocity(clip, std::max(n, 1.0))).cwiseAbs().maxCoeff(),
-              1e-4);
+              2e-3);
     EXPECT_LT((found.velocities_before.col(i) - velocity(clip, std::max(before, 1.0)))
                   .cwiseAbs()
                   .maxCoeff(),
-              1e-4);
-    EXPECT_LT((found.accelerations.col(i) - acceleration(clip)).cwiseAbs().maxCoeff(), 1e-2);
+              2e-3);
+    EXPECT_LT((found.accelerations.col(i) - acceleration(clip)).cwiseAbs().maxCoeff(), 0.16);
   };
   expect(0, 1, 3, 2);
   expect(1, 0, 4, 2);
