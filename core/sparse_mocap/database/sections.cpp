@@ -60,9 +60,10 @@ const Tensor& Section::tensor(const std::string& name, ElementType type,
 }
 
 std::map<std::string, Section> sections_of(const SafetensorsView& further) {
+  const json list = section_list(further.metadata);
   std::map<std::string, Section> sections;
   try {
-    for (const auto& [name, entry] : section_list(further.metadata).items())
+    for (const auto& [name, entry] : list.items())
       sections[name] = {entry.at("version").get<int>(),
                         entry.at("rows").get<std::string>(),
                         entry.at("metadata").get<std::map<std::string, std::string>>(),
