@@ -13,7 +13,7 @@ from bpy.types import Context, Event, Operator
 from ..scene import compat
 from ..scene.settings import settings_of
 from ..session import job as jobs
-from ..session.errors import InputError, one_line
+from ..session.errors import InputError, log, one_line
 from ..session.job import Cancelled, Job
 from ..session.steps import Slices, Steps, finished
 
@@ -150,6 +150,7 @@ class JobOperator:
             compat.clear_status(context)
 
     def _finished(self, message: str) -> set[str]:
+        log.info("%s", message)
         self.report({"INFO"}, message)
         return {"FINISHED"}
 

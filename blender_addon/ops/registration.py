@@ -8,10 +8,14 @@ from bpy.app.handlers import persistent
 
 from ..scene import live as live_scene
 from ..scene import overlay, prompt, sensor_graph
-from ..session import job
+from ..scene.report import facts
+from ..scene.user_folder import user_folder
+from ..session import job, log_file
 from ..session import live as live_session
 from ..session.calibrating import calibrations
+from ..session.core import core
 from ..session.database import databases
+from ..session.errors import log
 from ..session.imported import file_summaries
 from ..session.port_scanner import port_scanner
 from ..session.take import takes
@@ -20,6 +24,7 @@ from . import (
     calibrate,
     character,
     clips,
+    copy_report,
     database,
     import_motion,
     job_operator,
@@ -34,6 +39,7 @@ from . import (
 
 CLASSES = (
     *job_operator.CLASSES,
+    *copy_report.CLASSES,
     *import_motion.CLASSES,
     *mapping.CLASSES,
     *database.CLASSES,
@@ -83,7 +89,10 @@ def _end_all() -> None:
 
 
 def register() -> None:
-    """Register the operators."""
+    """Register the operators, and begin the log."""
+    log_file.begin(user_folder())
+    log.info("Sparse Mocap %s in Blender %s", core().__version__, bpy.app.version_string)
+    copy_report.more_facts[:] = [facts]
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.app.handlers.load_pre.append(_before_load)
@@ -107,3 +116,5 @@ def unregister() -> None:
     bpy.app.handlers.load_pre.remove(_before_load)
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)
+    copy_report.more_facts.clear()
+    log_file.end()

@@ -11,13 +11,22 @@ class InputError(ValueError):
 
 
 def one_line(error: BaseException) -> str:
-    """The error as one line that an animator can act on."""
+    """The error as one line that an animator can act on; it is logged too."""
+    line, is_expected = _line(error)
+    if is_expected:
+        log.warning("%s", line)
+    else:
+        log.error("%s", line, exc_info=error)
+    return line
+
+
+def _line(error: BaseException) -> tuple[str, bool]:
+    """The line, and whether such errors are to be expected."""
     if isinstance(error, OSError) and error.strerror and error.filename:
-        return f"{error.filename}: {error.strerror}"
+        return f"{error.filename}: {error.strerror}", True
     text = " ".join(str(error).split())
     if isinstance(error, ValueError | OSError) and text:
-        return text
+        return text, True
     if isinstance(error, MemoryError):
-        return "Not enough memory: close other programs, or use fewer or shorter files"
-    log.debug("unexpected error", exc_info=error)
-    return f"Unexpected {type(error).__name__}: {text}"
+        return "Not enough memory: close other programs, or use fewer or shorter files", True
+    return f"Unexpected {type(error).__name__}: {text}", False

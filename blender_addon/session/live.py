@@ -15,7 +15,7 @@ from typing import Any
 from .core import capture as capture_module
 from .core import core
 from .database import Database
-from .errors import InputError, one_line
+from .errors import InputError, log, one_line
 from .live_poses import LivePoses, Pose, Quality
 from .methods import MethodChoice
 
@@ -313,7 +313,9 @@ def _answer(request: Callable[[Any], Any], future: Future[Any], client: Any) -> 
 def one_line_of(error: BaseException) -> str:
     """As one_line, but a capture's error messages are used as they are."""
     if type(error).__module__.endswith("capture.errors"):
-        return " ".join(str(error).split())
+        line = " ".join(str(error).split())
+        log.warning("%s", line)
+        return line
     return one_line(error)
 
 

@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import calibrate, clips, database, import_motion, live, mapping, reconstruct, take
+from . import calibrate, clips, database, help, import_motion, live, mapping, reconstruct, take
 from .step import forget_timers
 
 CLASSES = (
@@ -14,6 +14,7 @@ CLASSES = (
     *live.CLASSES,
     *calibrate.CLASSES,
     *mapping.CLASSES,
+    *help.CLASSES,
 )
 
 

@@ -12,16 +12,17 @@ from bpy.types import Context, UILayout
 _FONT = 0  # the interface's
 _MARGIN_PX = 58.0  # of panel and box, and the scroll bar
 _ICON_PX = 24.0
-_USUAL_WIDTH_PX = 260.0
+_USUAL_WIDTH_PX, _USUAL_POINTS = 260.0, 11
 _NARROWEST_PX = 80.0
 
 
 def paragraph(layout: UILayout, context: Context, text: str, icon: str = "NONE") -> None:
     """Show the text, wrapped to the width of the sidebar."""
-    scale = context.preferences.system.ui_scale
+    scale = context.preferences.system.ui_scale or 1.0  # 0 in the background
     width = context.region.width / scale if context.region is not None else _USUAL_WIDTH_PX
     room = width - _MARGIN_PX - (0.0 if icon == "NONE" else _ICON_PX)
-    blf.size(_FONT, context.preferences.ui_styles[0].widget.points)
+    styles = context.preferences.ui_styles
+    blf.size(_FONT, styles[0].widget.points if len(styles) else _USUAL_POINTS)
     lines = wrapped(text, lambda line: blf.dimensions(_FONT, line)[0], max(room, _NARROWEST_PX))
     column = layout.column(align=True)
     column.scale_y = 0.8

@@ -62,8 +62,7 @@ def enable() -> dict[str, object]:
         layout = Recorder()
         panel = bpy.types.SPARSEMOCAP_PT_installation
         wide = SimpleNamespace(width=1e5)  # a sentence is one label
-        preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
-        context = SimpleNamespace(region=wide, preferences=preferences)
+        context = SimpleNamespace(region=wide, preferences=bpy.context.preferences)
         panel.draw(SimpleNamespace(layout=layout), context)
         found |= {"says": " ".join(layout.labels), "operators": layout.operators}
         if "copy_report" in dir(bpy.ops.sparse_mocap):
