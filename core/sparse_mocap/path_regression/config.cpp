@@ -36,7 +36,7 @@ Config live_config() {
                                 {{-0.56, 0.08, -0.88, kLiveLookAhead_s}}};
   config.fit.lever_m = 0.2;
   config.fit.step = 2.0;
-  config.fit.smoothness = 0.5;
+  config.fit.smoothness = 12.0;
   return config;
 }
 
@@ -54,7 +54,7 @@ Config whole_take_config() {
           {{side * centre_s, sigma_s, side * centre_s - 0.24, side * centre_s + 0.24}});
   config.fit.lever_m = 0.2;
   config.fit.step = 3.0;
-  config.fit.smoothness = 1.0;
+  config.fit.smoothness = 12.0;
   config.wide_spread_m = 0.07;
   return config;
 }
@@ -89,7 +89,9 @@ const OptionTable<Config>& options() {
           .number("step_weight", &Config::fit, &FitWeights::step, 0.0, 1e6,
                   "weight of the retrieved movement into a frame; that of retrieved poses is 1")
           .number("smoothness", &Config::fit, &FitWeights::smoothness, 0.0, 1e6,
-                  "weight of even movement from frame to frame")
+                  "weight of even movement from frame to frame where retrieved poses differ")
+          .number("calm_mps", &Config::fit, &FitWeights::calm_mps, 1e-3, 1e6,
+                  "how fast joints move for which even movement counts half, m/s")
           .number("twist_lever_m", &Config::fit, &FitWeights::lever_m, 1e-3, 1.0,
                   "how far out a bone's turn about itself is compared, m")
           .number("wide_spread_m", &Config::wide_spread_m, 1e-3, 1e3,

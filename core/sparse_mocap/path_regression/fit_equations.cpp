@@ -82,7 +82,21 @@ void FitEquations::add_pose_terms(int t) {
   add_points(weights_.pose * target.agreement, t, kHere, &target.points);
   if (t >= 1 && target.step.size() > 0)
     add_points(weights_.step, t, kFirstDifference, &target.step);
-  if (t >= 2) add_points(weights_.smoothness, t, kSecondDifference, nullptr);
+  if (t >= 2) add_points(weights_.smoothness * evenness(t), t, kSecondDifference, nullptr);
+}
+
+// How much even movement counts: fast movements are uneven, and retrieved poses that agree need no
+// help.
+double FitEquations::evenness(int t) const {
+  const FrameTarget& target = targets_[static_cast<std::size_t>(t)];
+  const double doubt = 1.0 - target.agreement;
+  const Eigen::VectorXd& step = target.step;
+  if (step.size() == 0) return doubt;
+  const Eigen::Index ends = 3 * skeleton_.num_joints();
+  const double speed_mps =
+      std::sqrt(step.head(ends).squaredNorm() / skeleton_.num_joints()) / frame_time_s_;
+  const double share = speed_mps / weights_.calm_mps;
+  return doubt / (1.0 + share * share);
 }
 
 // weight * |sum_k factors_k points(t - k) - target|^2.

@@ -38,6 +38,7 @@ class FitEquations {
   void see(int t);
   void add_frame(int t);
   void add_pose_terms(int t);
+  double evenness(int t) const;
   void add_inclination(int t);
   void add_root_terms(int t);
   double root_turn_weight(int t) const;

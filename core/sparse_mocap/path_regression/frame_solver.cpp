@@ -46,7 +46,7 @@ FrameSolver::FrameSolver(const Config& config, const MethodContext& context)
       index_(database_features(*database_, signal_rows_, features_, column_weights_),
              searched_frames(*database_, config.use_tempo_copies, context.excluded_clips)),
       config_(config),
-      usual_foot_heights_m_(usual_standing_heights_m(*database_)) {
+      standing_heights_(*database_) {
   const int most_neighbours = static_cast<int>(Config::kNeighbourShare * index_.num_rows());
   config_.num_neighbours = std::min(config_.num_neighbours, std::max(most_neighbours, 1));
   config_.num_paths = std::min(config_.num_paths, std::max(config_.num_neighbours / 4, 1));
@@ -85,6 +85,7 @@ RetrievedFrame FrameSolver::retrieve(const std::vector<Path>& paths, const Signa
   frame.target.inclination = inclination_target(database_->skeleton(), reading, signals_);
   frame.target.turning = turning_targets(reading, signals_);
   frame.target.root = root_rates(*database_, weighted);
+  frame.target.root.height_m = root_height_m(*database_, weighted, standing_heights_);
   frame.target.feet = feet(weighted, window);
   frame.diagnostics = retrieval_diagnostics(*database_, weighted, signals_, signal_rows_,
                                             window.rows.row(window.at));
@@ -112,7 +113,7 @@ Eigen::VectorXd FrameSolver::regressed(const WeightedPaths& weighted,
 
 // The retrieved frames' vote, together with how still the shanks' own sensors are.
 StandingFeet FrameSolver::feet(const WeightedPaths& weighted, const SignalWindow& window) const {
-  StandingFeet feet = standing_feet(*database_, weighted, usual_foot_heights_m_);
+  StandingFeet feet = standing_feet(*database_, weighted, standing_heights_);
   const Eigen::Index before = std::max(window.at - 1, window.begin);
   const Eigen::Index after = std::min(window.at + 1, window.end - 1);
   const double span = static_cast<double>(std::max<Eigen::Index>(after - before, 1));

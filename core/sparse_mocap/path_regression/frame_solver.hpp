@@ -56,7 +56,7 @@ class FrameSolver {
   retrieval::FeatureRows signal_rows_;  // of the database
   retrieval::KnnIndex index_;
   Config config_;
-  Eigen::Vector2d usual_foot_heights_m_;
+  retrieval::StandingHeights standing_heights_;
 };
 
 }  // namespace sparse_mocap::path_regression

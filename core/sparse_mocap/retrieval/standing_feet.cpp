@@ -40,10 +40,71 @@ Vec3 step_into(const MotionDatabase& database, int frame, std::size_t side) {
          ankle(database, from, side);
 }
 
+double ankle_height(const MotionDatabase& database, int frame, std::size_t side) {
+  return root_height(database, frame) + ankle(database, frame, side).y();
+}
+
+bool stands(const MotionDatabase& database, int frame, std::size_t side) {
+  return database.contacts()(frame, static_cast<Eigen::Index>(side)) > 0.0F;
+}
+
+// How high ankles stand in a clip while the body is upright: nearly the lowest, for heels rise
+// before a foot leaves the floor. NaN where they never do.
+double standing_height(const MotionDatabase& database, const Clip& clip) {
+  constexpr double kUpright = 0.6;       // of the legs' length
+  constexpr double kNearlyLowest = 0.2;  // of the heights
+  double leg_m = 0.0;
+  for (const auto joint : {standard_joint::lfemur, standard_joint::ltibia})
+    leg_m += database.skeleton().joint(joint).bone.norm();
+  std::vector<double> heights;
+  for (int frame = clip.begin; frame < clip.end; ++frame)
+    for (std::size_t side = 0; side < 2; ++side)
+      if (stands(database, frame, side) && -ankle(database, frame, side).y() > kUpright * leg_m)
+        heights.push_back(ankle_height(database, frame, side));
+  if (heights.empty()) return std::nan("");
+  const auto at = heights.begin() + static_cast<std::ptrdiff_t>(
+                                        kNearlyLowest * static_cast<double>(heights.size() - 1));
+  std::nth_element(heights.begin(), at, heights.end());
+  return *at;
+}
+
 }  // namespace
 
+StandingHeights::StandingHeights(const MotionDatabase& database) {
+  double total = 0.0;
+  int known = 0;
+  for (const Clip& clip : database.clips()) {
+    excess_m_.push_back(standing_height(database, clip));
+    if (std::isnan(excess_m_.back())) continue;
+    total += excess_m_.back();
+    ++known;
+  }
+  for (double& excess : excess_m_) excess = std::isnan(excess) ? 0.0 : excess - total / known;
+  Eigen::Vector2d count = Eigen::Vector2d::Zero();
+  for (int frame = 0; frame < database.num_frames(); ++frame) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (!stands(database, frame, side)) continue;
+      usual_m_[static_cast<Eigen::Index>(side)] +=
+          ankle_height(database, frame, side) - excess_m(database.clip_index(frame));
+      count[static_cast<Eigen::Index>(side)] += 1.0;
+    }
+  }
+  usual_m_ = usual_m_.cwiseQuotient(count.cwiseMax(1.0));
+}
+
+double root_height_m(const MotionDatabase& database, const WeightedPaths& weighted,
+                     const StandingHeights& heights) {
+  double height = 0.0;
+  for (std::size_t i = 0; i < weighted.paths.size(); ++i) {
+    const int frame = weighted.paths[i].frame;
+    height += weighted.weights[static_cast<Eigen::Index>(i)] *
+              (root_height(database, frame) - heights.excess_m(database.clip_index(frame)));
+  }
+  return height;
+}
+
 StandingFeet standing_feet(const MotionDatabase& database, const WeightedPaths& weighted,
-                           const Eigen::Vector2d& usual_height_m) {
+                           const StandingHeights& heights) {
   StandingFeet feet;
   for (std::size_t side = 0; side < 2; ++side) {
     const auto row = static_cast<Eigen::Index>(side);
@@ -51,31 +112,18 @@ StandingFeet standing_feet(const MotionDatabase& database, const WeightedPaths& 
     Vec3 step = Vec3::Zero();
     for (std::size_t i = 0; i < weighted.paths.size(); ++i) {
       const int frame = weighted.paths[i].frame;
-      const double stands = static_cast<double>(database.contacts()(frame, row)) *
-                            weighted.weights[static_cast<Eigen::Index>(i)];
-      if (stands <= 0.0) continue;
-      standing += stands;
-      step += stands * step_into(database, frame, side);
-      height += stands * (root_height(database, frame) + ankle(database, frame, side).y());
+      const double weight = weighted.weights[static_cast<Eigen::Index>(i)];
+      if (!stands(database, frame, side) || weight <= 0.0) continue;
+      standing += weight;
+      step += weight * step_into(database, frame, side);
+      height += weight * (ankle_height(database, frame, side) -
+                          heights.excess_m(database.clip_index(frame)));
     }
     feet.certainty[row] = std::min(standing, 1.0);  // weights sum to 1 but for rounding
-    feet.height_m[row] = standing > 0.0 ? height / standing : usual_height_m[row];
+    feet.height_m[row] = standing > 0.0 ? height / standing : heights.usual_m()[row];
     if (standing > 0.0) feet.step_m[side] = step / standing;
   }
   return feet;
-}
-
-Eigen::Vector2d usual_standing_heights_m(const MotionDatabase& database) {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero(), count = Eigen::Vector2d::Zero();
-  for (int frame = 0; frame < database.num_frames(); ++frame) {
-    for (std::size_t side = 0; side < 2; ++side) {
-      const auto row = static_cast<Eigen::Index>(side);
-      if (!(database.contacts()(frame, row) > 0.0F)) continue;
-      sum[row] += root_height(database, frame) + ankle(database, frame, side).y();
-      count[row] += 1.0;
-    }
-  }
-  return sum.cwiseQuotient(count.cwiseMax(1.0));
 }
 
 // A logistic function; its coefficients are set by hand, on HDM05 motions with simulated sensors.

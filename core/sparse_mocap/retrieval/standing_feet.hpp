@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <vector>
 
 #include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/retrieval/neighbourhood.hpp"
@@ -19,13 +20,31 @@ struct StandingFeet {
   Eigen::Vector2d height_m = Eigen::Vector2d::Zero();  // of those ankles, above the floor
 };
 
-// Weighted votes and means of the retrieved frames. Where none of them stands, the step is zero and
-// the height what the database's standing ankles have, usual_height_m.
-StandingFeet standing_feet(const MotionDatabase& database, const WeightedPaths& weighted,
-                           const Eigen::Vector2d& usual_height_m);
+// How high ankles stand above the floor in a database. Recordings differ in it by several cm, with
+// the place of the floor, shoes and markers; poses mixed from them need one floor.
+class StandingHeights {
+ public:
+  explicit StandingHeights(const MotionDatabase& database);
 
-// The mean height of the ankles in the database's frames in which they stand, m; left, right.
-Eigen::Vector2d usual_standing_heights_m(const MotionDatabase& database);
+  // The mean over the frames in which the ankle stands, m; left, right; each clip on the floor that
+  // all share.
+  const Eigen::Vector2d& usual_m() const { return usual_m_; }
+  // How much lower that floor is than the clip's own, m: to be taken from its heights.
+  double excess_m(int clip) const { return excess_m_[static_cast<std::size_t>(clip)]; }
+
+ private:
+  std::vector<double> excess_m_;
+  Eigen::Vector2d usual_m_ = Eigen::Vector2d::Zero();
+};
+
+// Weighted votes and means of the retrieved frames. Where none of them stands, the step is zero and
+// the height the usual one.
+StandingFeet standing_feet(const MotionDatabase& database, const WeightedPaths& weighted,
+                           const StandingHeights& heights);
+
+// The mean height of the root above the floor that all clips share, m.
+double root_height_m(const MotionDatabase& database, const WeightedPaths& weighted,
+                     const StandingHeights& heights);
 
 // The probability that a foot stands, from the vote of the retrieved frames and how much the
 // specific force at the foot's own shank changes from reading to reading (m/s^2; NaN: not known).

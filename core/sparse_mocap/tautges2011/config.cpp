@@ -49,6 +49,8 @@ const OptionTable<Config>& options() {
                   "share of the poses' variance that the pose may vary in")
           .integer("max_iterations", &Config::max_iterations, 1, 10'000,
                    "steps of the minimisation, at most")
+          .number("follow_s", &Config::follow_s, 0.0, 10.0,
+                  "how far poses lag behind those of the paper, so that none jumps; 0: not at all")
           .flag("scales_with_database", &Config::scales_with_database,
                 "whether K and I shrink with databases smaller than the paper's");
   return table;

@@ -34,13 +34,17 @@ struct Config {
   double pca_variance = 0.99;
   int max_iterations = 50;
 
-  // The one departure from the paper: its K and I are meant for 560,000 frames. As many of a small
+  // One departure from the paper: its K and I are meant for 560,000 frames. As many of a small
   // database mix unrelated motions, so K is at most kNeighbourShare of the frames, and I as great a
   // share of them as in the paper, but at least kFewestPaths.
   bool scales_with_database = true;
   static constexpr double kNeighbourShare = 0.05;
   static constexpr double kPathShare = 256.0 / 560'000.0;
   static constexpr int kFewestPaths = 32;
+
+  // The other: the poses that the paper's energy gives jump where the paths change, so what is
+  // shown follows them with a lag. The method itself goes on from its own poses. 0: shows these.
+  double follow_s = 0.15;
 
   // K and I for a database that has so many searched frames.
   Config scaled_to(int num_frames) const;

@@ -24,7 +24,8 @@ Reconstructor::Reconstructor(const Config& config, const MethodContext& context)
       energy_model_(make_energy_model(config_)),
       graph_(clips_of_frames(*database_),
              {config_.penalty, 1.0, config_.window_readings, config_.is_time_warping}),
-      root_(database_->frame_time_s()) {}
+      root_(database_->frame_time_s()),
+      follower_(config_.follow_s, database_->frame_time_s()) {}
 
 std::optional<PoseEstimate> Reconstructor::step(const Reading& reading) {
   require_sensors(reading, num_sensors_);
@@ -51,6 +52,7 @@ std::optional<PoseEstimate> Reconstructor::step(const Reading& reading) {
       minimize(energy, subspace, starts(neighbours, subspace), config_.max_iterations).angles;
   // Section 6.4: the root moves as the retrieved motions do in the mean.
   PoseEstimate estimate = remember(reading, q_best, root_rates(*database_, neighbours));
+  follower_.apply(estimate);
   estimate.diagnostics =
       retrieval_diagnostics(*database_, neighbours, signals_, signal_rows_, alpha);
   return estimate;
@@ -65,6 +67,7 @@ void Reconstructor::reset() {
   graph_.reset();
   root_.reset();
   past_.reset();
+  follower_.reset();
 }
 
 // The previous pose; in the first frame the mean and the best path's pose.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sparse_mocap/reconstruction/method_info.hpp"
+#include "sparse_mocap/reconstruction/pose_follower.hpp"
 #include "sparse_mocap/retrieval/knn_index.hpp"
 #include "sparse_mocap/retrieval/olng.hpp"
 #include "sparse_mocap/retrieval/root_motion.hpp"
@@ -18,7 +19,7 @@ namespace sparse_mocap::tautges2011 {
 // Motion reconstruction using sparse accelerometer data: Tautges, Zinke, Krueger, Baumann, Weber,
 // Helten, Mueller, Seidel, Eberhardt, ACM Trans. Graph. 30 (2011).
 //
-// The paper and nothing else, but for Config::scales_with_database.
+// The paper and nothing else, but for Config::scales_with_database and Config::follow_s.
 class Reconstructor : public LiveMethod {
  public:
   // Throws ConfigError.
@@ -50,6 +51,7 @@ class Reconstructor : public LiveMethod {
   retrieval::RootTracker root_;
   std::vector<retrieval::Neighbour> nearest_;  // S^(t+1)
   std::optional<Past> past_;
+  PoseFollower follower_;
 };
 
 }  // namespace sparse_mocap::tautges2011

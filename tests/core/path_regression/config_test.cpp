@@ -24,7 +24,7 @@ TEST(Config, OfWholeTakesLooksAsFarAheadAsBack) {
     const retrieval::FeatureLayout layout(parts, 25.0);
     EXPECT_EQ(layout.look_ahead(), layout.reach_back());
   }
-  EXPECT_GT(config.fit.smoothness, live_config().fit.smoothness);
+  EXPECT_GT(config.num_paths, live_config().num_paths);
 }
 
 TEST(Config, TakesSettingsOnTopOfEither) {

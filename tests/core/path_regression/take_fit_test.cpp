@@ -31,6 +31,7 @@ FitWeights all_weights() {
           .pose = 1.0,
           .step = 0.7,
           .smoothness = 0.4,
+          .calm_mps = 0.6,
           .inclination = 3.0,
           .contact = 20.0,
           .stands_from = 0.0,
@@ -132,7 +133,11 @@ double expected_value(const Take& take, const FitWeights& w, std::size_t first_f
              std::pow(yaw(t) - yaw(t - 1) + turn.angle() * turn.axis().y() - rate * kDt, 2);
     }
     if (t < 2) continue;
-    sum += w.smoothness * (x[t] - 2.0 * x[t - 1] + x[t - 2]).squaredNorm();
+    const double speed_mps =
+        std::sqrt(target.step.head<3 * kNumStandardJoints>().squaredNorm() / kNumStandardJoints) /
+        kDt;
+    sum += w.smoothness * (1.0 - target.agreement) / (1.0 + std::pow(speed_mps / w.calm_mps, 2)) *
+           (x[t] - 2.0 * x[t - 1] + x[t - 2]).squaredNorm();
     sum += w.root_smoothness * (p[t] - 2.0 * p[t - 1] + p[t - 2]).squaredNorm();
     sum += w.root_smoothness * std::pow(yaw(t) - 2.0 * yaw(t - 1) + yaw(t - 2), 2);
   }
@@ -250,7 +255,8 @@ TEST(TakeFit, KeepsAStandingFootInPlace) {
         start_of(kSkeleton, kDt, target, take.frames.empty() ? nullptr : &take.frames.back()));
   }
   EXPECT_NEAR(take.frames.back().root_position.z(), 24 * kDt * 0.5, 1e-9);
-  TakeFit(kSkeleton, kDt, {.root_step = 5.0}).fit(take.frames, take.targets, 0, 50);
+  TakeFit(kSkeleton, kDt, {.contact = 100.0, .root_step = 5.0})
+      .fit(take.frames, take.targets, 0, 50);
   const auto foot = [&](const FittedFrame& frame, int ankle) -> Vec3 {
     return frame.root_position + yaw_rotation(frame.yaw_rad) *
                                      posed(frame.rotations).end[static_cast<std::size_t>(ankle)];

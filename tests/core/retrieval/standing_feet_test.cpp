@@ -33,14 +33,14 @@ WeightedPaths paths_to(const std::vector<int>& frames, const Eigen::VectorXd& we
 
 TEST(StandingFeet, AreAVoteOfTheRetrievedFrames) {
   const auto database = half_standing();
-  const auto feet = standing_feet(*database, paths_to({2, 4, 15}, Eigen::Vector3d(0.5, 0.2, 0.3)),
-                                  Eigen::Vector2d(0.08, 0.09));
+  const StandingHeights heights(*database);
+  const auto feet =
+      standing_feet(*database, paths_to({2, 4, 15}, Eigen::Vector3d(0.5, 0.2, 0.3)), heights);
   EXPECT_NEAR(feet.certainty[0], 0.7, 1e-9);
   EXPECT_NEAR(feet.certainty[1], 1.0, 1e-9);
-  const auto none = standing_feet(*database, paths_to({15}, Eigen::VectorXd::Ones(1)),
-                                  Eigen::Vector2d(0.08, 0.09));
+  const auto none = standing_feet(*database, paths_to({15}, Eigen::VectorXd::Ones(1)), heights);
   EXPECT_EQ(none.certainty[0], 0.0);
-  EXPECT_EQ(none.height_m[0], 0.08);
+  EXPECT_EQ(none.height_m[0], heights.usual_m()[0]);
   EXPECT_EQ(none.step_m[0], Vec3::Zero());
 }
 
@@ -51,7 +51,7 @@ TEST(StandingFeet, MoveAsTheAnklesOfTheClipDo) {
   const auto yaws = headings(motion);
   for (const int frame : {1, 5, 9}) {
     const auto feet = standing_feet(*database, paths_to({frame}, Eigen::VectorXd::Ones(1)),
-                                    Eigen::Vector2d::Zero());
+                                    StandingHeights(*database));
     const JointTransforms now = motion.transforms(frame), before = motion.transforms(frame - 1);
     for (const auto& [side, ankle] :
          {std::pair<Eigen::Index, std::size_t>{0, ltibia}, {1, rtibia}}) {
@@ -63,7 +63,7 @@ TEST(StandingFeet, MoveAsTheAnklesOfTheClipDo) {
   }
 }
 
-TEST(UsualStandingHeights, AreMeansOverTheFramesThatStand) {
+TEST(StandingHeights, AreMeansOverTheFramesThatStand) {
   const auto database = half_standing();
   const Motion motion = clip_motion(*database, 0);
   double left = 0.0, right = 0.0;
@@ -72,9 +72,53 @@ TEST(UsualStandingHeights, AreMeansOverTheFramesThatStand) {
     if (t < 10) left += pose.end[ltibia].y() / 10.0;
     right += pose.end[rtibia].y() / 20.0;
   }
-  const Eigen::Vector2d found = usual_standing_heights_m(*database);
-  EXPECT_NEAR(found[0], left, 1e-5);
-  EXPECT_NEAR(found[1], right, 1e-5);
+  const StandingHeights heights(*database);
+  EXPECT_EQ(heights.excess_m(0), 0.0);
+  EXPECT_NEAR(heights.usual_m()[0], left, 1e-5);
+  EXPECT_NEAR(heights.usual_m()[1], right, 1e-5);
+}
+
+// A clip, the same recorded on a floor 4 cm lower, and one in which nobody stands.
+std::shared_ptr<const MotionDatabase> on_two_floors() {
+  const Motion motion = testing::swaying_motion(testing::template_skeleton(), 1, 20, 25.0);
+  DatabaseContent content = testing::content_of({motion, motion, motion}, 25.0);
+  for (auto& rows : content.clip_rows) rows.contacts.setOnes();
+  content.clip_rows[1].root_motion.col(root_motion_column::height).array() += 0.04F;
+  content.clip_rows[2].contacts.setZero();
+  return testing::database_of(content);
+}
+
+TEST(StandingHeights, PutAllClipsOnOneFloor) {
+  const auto database = on_two_floors();
+  const StandingHeights heights(*database);
+  EXPECT_NEAR(heights.excess_m(0), -0.02, 1e-6);
+  EXPECT_NEAR(heights.excess_m(1), 0.02, 1e-6);
+  EXPECT_EQ(heights.excess_m(2), 0.0);
+  const auto seen = [&](int frame) {
+    const auto path = paths_to({frame}, Eigen::VectorXd::Ones(1));
+    return Eigen::Vector3d(root_height_m(*database, path, heights),
+                           standing_feet(*database, path, heights).height_m[0],
+                           standing_feet(*database, path, heights).height_m[1]);
+  };
+  const Motion motion = clip_motion(*database, 0);
+  for (const int frame : {0, 7, 19}) {
+    const JointTransforms pose = motion.transforms(frame);
+    const Eigen::Vector3d recorded(pose.end[root].y(), pose.end[ltibia].y(), pose.end[rtibia].y());
+    EXPECT_LT((seen(frame) - recorded - Eigen::Vector3d::Constant(0.02)).norm(), 1e-5) << frame;
+    EXPECT_LT((seen(20 + frame) - seen(frame)).norm(), 1e-5) << frame;
+  }
+}
+
+// Lying ankles are lower than standing ones, and say nothing of the floor.
+TEST(StandingHeights, LookAtUprightBodies) {
+  const Motion standing = testing::resting_motion(testing::template_skeleton(), 20, 25.0, 0.95);
+  DatabaseContent content = testing::content_of({standing, standing}, 25.0);
+  for (auto& rows : content.clip_rows) rows.contacts.setOnes();
+  DatabaseRows& lying = content.clip_rows[1];
+  for (const auto ankle : {ltibia, rtibia})  // as high as the root
+    lying.positions.block(10, 3 * static_cast<Eigen::Index>(ankle) + 1, 10, 1).setZero();
+  lying.root_motion.block(10, root_motion_column::height, 10, 1).setConstant(0.05F);
+  EXPECT_NEAR(StandingHeights(*testing::database_of(content)).excess_m(1), 0.0, 1e-6);
 }
 
 TEST(StandingCertainty, RisesWithTheVoteAndFallsAsTheShankMoves) {
