@@ -58,7 +58,7 @@ TEST(StandingFeet, MoveAsTheAnklesOfTheClipDo) {
       const Vec3 step = yaw_rotation(yaws[static_cast<std::size_t>(frame - 1)]).transpose() *
                         (now.end[ankle] - before.end[ankle]);
       EXPECT_LT((feet.step_m[static_cast<std::size_t>(side)] - step).norm(), 1e-4) << frame;
-      EXPECT_NEAR(feet.height_m[side], now.end[ankle].y(), 1e-5);
+      EXPECT_NEAR(feet.height_m[side], now.end[ankle].y(), 1e-4);
     }
   }
 }
@@ -74,8 +74,8 @@ TEST(StandingHeights, AreMeansOverTheFramesThatStand) {
   }
   const StandingHeights heights(*database);
   EXPECT_EQ(heights.excess_m(0), 0.0);
-  EXPECT_NEAR(heights.usual_m()[0], left, 1e-5);
-  EXPECT_NEAR(heights.usual_m()[1], right, 1e-5);
+  EXPECT_NEAR(heights.usual_m()[0], left, 1e-4);
+  EXPECT_NEAR(heights.usual_m()[1], right, 1e-4);
 }
 
 // A clip, the same recorded on a floor 4 cm lower, and one in which nobody stands.
@@ -104,7 +104,7 @@ TEST(StandingHeights, PutAllClipsOnOneFloor) {
   for (const int frame : {0, 7, 19}) {
     const JointTransforms pose = motion.transforms(frame);
     const Eigen::Vector3d recorded(pose.end[root].y(), pose.end[ltibia].y(), pose.end[rtibia].y());
-    EXPECT_LT((seen(frame) - recorded - Eigen::Vector3d::Constant(0.02)).norm(), 1e-5) << frame;
+    EXPECT_LT((seen(frame) - recorded - Eigen::Vector3d::Constant(0.02)).norm(), 1e-4) << frame;
     EXPECT_LT((seen(20 + frame) - seen(frame)).norm(), 1e-5) << frame;
   }
 }
@@ -114,11 +114,12 @@ TEST(StandingHeights, LookAtUprightBodies) {
   const Motion standing = testing::resting_motion(testing::template_skeleton(), 20, 25.0, 0.95);
   DatabaseContent content = testing::content_of({standing, standing}, 25.0);
   for (auto& rows : content.clip_rows) rows.contacts.setOnes();
-  DatabaseRows& lying = content.clip_rows[1];
-  for (const auto ankle : {ltibia, rtibia})  // as high as the root
-    lying.positions.block(10, 3 * static_cast<Eigen::Index>(ankle) + 1, 10, 1).setZero();
-  lying.root_motion.block(10, root_motion_column::height, 10, 1).setConstant(0.05F);
-  EXPECT_NEAR(StandingHeights(*testing::database_of(content)).excess_m(1), 0.0, 1e-6);
+  testing::change_rows(content, 1, [](DatabaseRows& lying) {
+    for (const auto ankle : {ltibia, rtibia})  // as high as the root
+      lying.positions.block(10, 3 * static_cast<Eigen::Index>(ankle) + 1, 10, 1).setZero();
+    lying.root_motion.block(10, root_motion_column::height, 10, 1).setConstant(0.05F);
+  });
+  EXPECT_NEAR(StandingHeights(*testing::database_of(content)).excess_m(1), 0.0, 1e-4);
 }
 
 TEST(StandingCertainty, RisesWithTheVoteAndFallsAsTheShankMoves) {
