@@ -44,9 +44,9 @@ class SPARSEMOCAP_OT_toggle_overlay(Operator):
     bl_idname = "sparse_mocap.toggle_overlay"
     bl_label = "Show Sensors"
     bl_description = (
-        "Show in the viewport where the sensors are on the character (blue; without data orange "
-        "and small), which feet stand on the floor (green squares), and which limbs are unsure, "
-        "typically more than 8 cm off (long orange dashes) or 15 cm (short pink dashes)"
+        "Show where the sensors are (blue; orange and small without data), which feet stand (green "
+        "squares), and limbs that are typically more than 8 cm off (long orange dashes) or 15 cm "
+        "(short pink dashes)"
     )
     bl_options = {"INTERNAL"}
 
@@ -67,9 +67,9 @@ class SPARSEMOCAP_OT_toggle_sensor_graph(Operator):
     bl_idname = "sparse_mocap.toggle_sensor_graph"
     bl_label = "Sensor Graph"
     bl_description = (
-        "Show in the viewport, around the current frame, what each sensor of the take measured "
-        "(blue) and what it should read on the result (orange, dashed), in m/s², gravity included. "
-        "Where they differ, the result is not what was performed"
+        "Show around the current frame what each sensor measured (blue) and what it should read on "
+        "the result (orange, dashed), in m/s² with gravity. Where they differ, the result is not "
+        "what was performed"
     )
     bl_options = {"INTERNAL"}
 

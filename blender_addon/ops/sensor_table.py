@@ -9,6 +9,7 @@ from bpy.props import IntProperty, StringProperty
 from bpy.types import Context, Event, Operator
 
 from ..scene.settings import settings_of
+from ..scene.translations import tr
 from ..session.core import core
 from ..session.errors import InputError
 from ..session.live import answer_of
@@ -44,7 +45,8 @@ class SPARSEMOCAP_OT_set_site(NowOperator, Operator):
 
         if self.site:
             return self.execute(context)
-        context.window_manager.popup_menu(draw, title=f"Where is {identity} worn?")
+        title = tr("Where is {sensor} worn?").format(sensor=identity)
+        context.window_manager.popup_menu(draw, title=title)
         return {"FINISHED"}
 
     def act(self, context: Context) -> str:
@@ -77,7 +79,7 @@ class SPARSEMOCAP_OT_shake_to_find(NowOperator, Operator):
 
         if self.site:
             return self.execute(context)
-        context.window_manager.popup_menu(draw, title="Which sensor will be shaken?")
+        context.window_manager.popup_menu(draw, title=tr("Which sensor will be shaken?"))
         return {"FINISHED"}
 
     def act(self, context: Context) -> str:

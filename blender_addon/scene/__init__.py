@@ -4,8 +4,9 @@
 
 def register() -> None:
     """Register the settings."""
-    from . import clips, mapping, preferences, settings
+    from . import clips, mapping, preferences, settings, translations
 
+    translations.register()
     preferences.register()
     settings.register()
     clips.register()
@@ -14,9 +15,10 @@ def register() -> None:
 
 def unregister() -> None:
     """Unregister the settings."""
-    from . import clips, mapping, preferences, settings
+    from . import clips, mapping, preferences, settings, translations
 
     mapping.unregister()
     clips.unregister()
     settings.unregister()
     preferences.unregister()
+    translations.unregister()

@@ -10,6 +10,7 @@ import bpy
 
 from ..session import job as jobs
 from ..session.calibrating import CALIBRATING
+from .translations import tr
 
 _FONT = 0
 _LARGEST_PX = 64.0
@@ -48,14 +49,14 @@ def hide() -> None:
 def _draw() -> None:
     if _countdown > 0:
         left, width, height = _free_view()
-        _line("Recording starts in", 0.5 * _LARGEST_PX, left, width, 0.62 * height)
+        _line(tr("Recording starts in"), 0.5 * _LARGEST_PX, left, width, 0.62 * height)
         _line(str(_countdown), 2.5 * _LARGEST_PX, left, width, 0.62 * height - 3.0 * _LARGEST_PX)
         return
     job = jobs.current()
     if job is None or job.label != CALIBRATING or job.is_cancelled:
         return
     what, _, seconds = job.what.rpartition(": ")
-    headline, _, hint = what.partition(", ")
+    headline, _, hint = tr(what).partition(", ")
     left, width, height = _free_view()
     _line(headline, _LARGEST_PX, left, width, 0.62 * height)
     _line(hint, 0.5 * _LARGEST_PX, left, width, 0.62 * height - 0.9 * _LARGEST_PX)

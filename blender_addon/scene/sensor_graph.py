@@ -19,6 +19,7 @@ from . import compat
 from .axes import Floats
 from .drawing import lines, polyline, rectangle
 from .performance import Facts, facts_of, performed_action
+from .translations import tr
 
 HALF_S = 2.5
 """How much is shown before and after the playhead."""
@@ -155,10 +156,11 @@ def _write(
     if len(curves.times_s) == 0:
         return
     now = int(np.argmin(np.abs(curves.times_s)))
+    measured, expected = curves.measured[now, sensor], curves.expected[now, sensor]
     parts = [
-        (f"{site}   ", _WORDS),
-        (f"measured {curves.measured[now, sensor]:.1f}   ", _MEASURED),
-        (f"expected {curves.expected[now, sensor]:.1f} m/s²", _EXPECTED),
+        (tr(site), _WORDS),
+        (tr("measured {value}").format(value=f"{measured:.1f}"), _MEASURED),
+        (tr("expected {value} m/s²").format(value=f"{expected:.1f}"), _EXPECTED),
     ]
     blf.size(0, _FONT_PX * scale)
     x = low[0] + _GAP_PX * scale
@@ -167,7 +169,7 @@ def _write(
         blf.color(0, *colour)
         blf.position(0, x, y, 0.0)
         blf.draw(0, text)
-        x += blf.dimensions(0, text)[0] + _GAP_PX * scale
+        x += blf.dimensions(0, text)[0] + 3.0 * _GAP_PX * scale
 
 
 def _free_width(context: Context) -> tuple[float, float]:

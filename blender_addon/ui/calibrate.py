@@ -9,8 +9,10 @@ import bpy
 from bpy.types import Context, Panel, UILayout
 
 from ..scene.settings import settings_of
+from ..scene.translations import tr
 from ..session import live
 from ..session.calibrating import CALIBRATING, calibrations
+from ..session.names import shown_site
 from . import text
 from .step import StepPanel, action_button, redraw_soon, tick
 
@@ -64,8 +66,9 @@ def _contents(layout: UILayout, context: Context, path: str) -> None:
 
 
 def _row(sensor: Any) -> tuple[str, str]:
-    name = sensor.site.replace("_", " ")
-    return name, f"quality {sensor.quality:.0%}, {sensor.gravity:.2f} m/s² at rest"
+    values = tr("quality {quality}, {gravity} m/s² at rest")
+    values = values.format(quality=f"{sensor.quality:.0%}", gravity=f"{sensor.gravity:.2f}")
+    return shown_site(sensor.site), values
 
 
 CLASSES = (SPARSEMOCAP_PT_calibration,)

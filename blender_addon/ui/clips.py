@@ -10,6 +10,7 @@ from bpy.types import Context, Panel, UILayout, UIList
 
 from ..scene.clips import clip_list, fill, is_listed, opened_database
 from ..scene.preview import clip_in_preview
+from ..scene.translations import tr
 from ..session.core import missing_reason
 from ..session.database import Database
 from . import text
@@ -40,10 +41,10 @@ class SPARSEMOCAP_UL_clips(UIList):
             return
         row = database.clips.rows[index]
         split = layout.split(factor=0.58, align=True)
-        split.label(text=row.label)
+        split.label(text=row.label, translate=False)
         split = split.split(factor=0.45, align=True)
-        split.label(text=row.actor)
-        split.label(text=f"{row.length_s:.1f} s")
+        split.label(text=row.actor, translate=False)
+        split.label(text=f"{row.length_s:.1f} s", translate=False)
 
     def filter_items(
         self, context: Context, data: Any, propname: str
@@ -106,7 +107,7 @@ def _draw_selected(layout: UILayout, context: Context, database: Database) -> No
     row = layout.row(align=True)
     row.operator("sparse_mocap.fit_preview_range", icon="PREVIEW_RANGE")
     row.operator("sparse_mocap.keep_preview", icon="CHECKMARK")
-    text.paragraph(layout, context, f"Previewing {name}")
+    text.paragraph(layout, context, tr("Previewing {name}").format(name=name))
 
 
 def _fill() -> None:

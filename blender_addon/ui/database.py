@@ -9,6 +9,7 @@ import bpy
 from bpy.types import Context, Panel, UILayout
 
 from ..scene.settings import SPARSEMOCAP_PG_settings, settings_of
+from ..scene.translations import tr
 from ..session.core import missing_reason
 from ..session.database import BUILDING, databases, default_output, last_build
 from ..session.demo import MAKING, TRYING
@@ -107,7 +108,7 @@ def _build_form(
     column.prop(settings, "strict")
     if settings.source and not settings.output:
         path = default_output(bpy.path.abspath(settings.source))
-        text.paragraph(box, context, f"Will be saved as {path}")
+        text.paragraph(box, context, tr("Will be saved as {path}").format(path=path))
     action_button(
         box,
         "sparse_mocap.build_database",
@@ -136,16 +137,17 @@ def _outcome(layout: UILayout, context: Context) -> None:
     if summary is None or summary.path != path or not (summary.skipped or summary.warnings):
         return
     box = layout.box()
-    counts = [(len(summary.skipped), "skipped"), (len(summary.warnings), "warnings")]
-    line = ", ".join(f"{count} {what}" for count, what in counts if count)
-    text.paragraph(box, context, f"{summary.num_files} files: {line}", icon="INFO")
+    line = tr("{files} files: {skipped} skipped, {warnings} warnings").format(
+        files=summary.num_files, skipped=len(summary.skipped), warnings=len(summary.warnings)
+    )
+    text.paragraph(box, context, line, icon="INFO")
     for name, reason in summary.skipped[:_MOST_SHOWN]:
         base = os.path.basename(name)
         reason = reason.removeprefix(name).lstrip(": ")
         text.paragraph(box, context, text.shortened(f"{base}: {reason}"))
     more = len(summary.skipped) - _MOST_SHOWN
     if more > 0:
-        text.paragraph(box, context, f"and {more} more")
+        text.paragraph(box, context, tr("and {count} more").format(count=more))
     box.operator("sparse_mocap.show_build_report", icon="TEXT")
 
 

@@ -10,6 +10,7 @@ import bpy
 from bpy.types import Context, UILayout
 
 from ..scene import compat
+from ..scene.translations import tr
 from ..session.core import missing_reason
 from ..session.imported import USUAL_SIZES_M, file_summaries
 from . import text
@@ -49,8 +50,10 @@ def draw_options(operator: Any, context: Context) -> None:
     layout.use_property_decorate = False
     paths = operator.paths()
     if context.area is None or context.area.type != "FILE_BROWSER":
-        name = os.path.basename(paths[0]) if len(paths) == 1 else f"{len(paths)} files"
-        layout.label(text=name, icon="FILE")
+        name = tr("{count} files").format(count=len(paths))
+        if len(paths) == 1:
+            name = os.path.basename(paths[0])
+        layout.label(text=name, icon="FILE", translate=False)
     column = layout.column()
     column.prop(operator, "unit")
     column.row().prop(operator, "up_axis", expand=True)

@@ -7,6 +7,7 @@ from bpy.types import Context, Panel, UILayout
 
 from ..scene import live as live_scene
 from ..scene.settings import settings_of
+from ..scene.translations import tr
 from ..session import live, sensors
 from ..session.calibrating import CALIBRATING
 from ..session.core import missing_reason
@@ -75,7 +76,8 @@ def _choices(layout: UILayout, context: Context) -> None:
 def _session(layout: UILayout, context: Context, session: LiveSession) -> None:
     state = session.state
     row = layout.row()
-    row.label(text=session.label, icon="LINKED" if state.is_connected else "SORTTIME")
+    icon = "LINKED" if state.is_connected else "SORTTIME"
+    row.label(text=session.label, icon=icon, translate=False)
     row.operator("sparse_mocap.disconnect_sensors", text="", icon="X")
     if not state.is_connected:
         layout.label(text="Connecting")
@@ -108,12 +110,12 @@ def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
         text.error(layout, context, state.warning)
     if session.is_live_wanted and quality.num_poses and not state.no_readings:
         rows = [
-            ("Match", quality.match),
+            ("Match", tr(quality.match)),
             ("Delay", f"{1e3 * quality.latency_s:.0f} ms"),
         ]
         dropped = quality.num_skipped + state.num_dropped
         if dropped:
-            rows.append(("Skipped", f"{dropped} poses"))
+            rows.append(("Skipped", tr("{count} poses").format(count=dropped)))
         text.facts(layout, rows)
 
 
@@ -149,8 +151,9 @@ def _recording(layout: UILayout, context: Context, state: LiveState) -> None:
         text.paragraph(
             layout,
             context,
-            f"Recording: {text.duration(state.recording['seconds'])}. "
-            "It continues even if Blender quits",
+            tr("Recording: {duration}. It continues even if Blender quits").format(
+                duration=text.duration(state.recording["seconds"])
+            ),
             icon="REC",
         )
     _last_take(layout, context)
@@ -158,7 +161,8 @@ def _recording(layout: UILayout, context: Context, state: LiveState) -> None:
 
 def _last_take(layout: UILayout, context: Context) -> None:
     if sensors.last_takes:
-        text.paragraph(layout, context, f"Saved: {sensors.last_takes[0]}", icon="FILE_TICK")
+        saved = tr("Saved: {path}").format(path=sensors.last_takes[0])
+        text.paragraph(layout, context, saved, icon="FILE_TICK")
 
 
 CLASSES = (SPARSEMOCAP_PT_live,)

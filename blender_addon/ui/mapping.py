@@ -9,6 +9,7 @@ from bpy.types import Context, Panel, UILayout, UIList
 
 from ..scene.mapping import mapping_of
 from ..scene.settings import settings_of
+from ..scene.translations import tr
 from ..session.core import missing_reason
 from ..session.mapping import LABELS, label_of, last_mapped
 from . import text
@@ -36,7 +37,7 @@ class SPARSEMOCAP_UL_mapping(UIList):
         """Draw the part."""
         split = layout.split(factor=0.42, align=True)
         split.label(text=label_of(item.name))
-        split.label(text=item.source or "-")
+        split.label(text=item.source or "-", translate=False)
 
     def filter_items(
         self, context: Context, data: Any, propname: str
@@ -53,7 +54,7 @@ def _chosen(layout: UILayout, context: Context) -> None:
     if not 0 <= rows.index < len(rows.joints):
         return
     row = rows.joints[rows.index]
-    layout.label(text=f"{label_of(row.name)}:")
+    layout.label(text=f"{tr(label_of(row.name))}:", translate=False)
     fields = layout.row(align=True)
     fields.prop_search(row, "source", rows, "sources", text="", icon="BONE_DATA")
     pick = fields.row(align=True)
@@ -85,7 +86,8 @@ class SPARSEMOCAP_PT_mapping(StepPanel, Panel):
         if last is None:
             return
         rows = mapping_of(context)
-        text.paragraph(layout, context, f"Bones of {last.name}", icon="ARMATURE_DATA")
+        whose = tr("Bones of {name}").format(name=last.name)
+        text.paragraph(layout, context, whose, icon="ARMATURE_DATA")
         if last.problem:
             text.error(layout, context, last.problem)
         layout.template_list(

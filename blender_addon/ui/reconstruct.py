@@ -10,6 +10,7 @@ from ..scene.armature import is_ours
 from ..scene.ghost import ghost_of
 from ..scene.performance import facts_of, performed_action
 from ..scene.settings import SPARSEMOCAP_PG_settings, settings_of
+from ..scene.translations import tr
 from ..session.bake import PLACING_AGAIN
 from ..session.core import missing_reason
 from ..session.methods import has_best_quality, preset_items
@@ -55,8 +56,10 @@ class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
             layout, "sparse_mocap.reconstruct", "ARMATURE_DATA", RECONSTRUCTING, is_ready=is_ready
         )
         if not is_ready:
-            missing = "a take" if settings.database else "a motion database"
-            text.paragraph(layout, context, f"Choose {missing} first", icon="INFO")
+            missing = "Choose a motion database first"
+            if settings.database:
+                missing = "Choose a take first"
+            text.paragraph(layout, context, missing, icon="INFO")
         _performed(layout, context)
 
 
@@ -146,7 +149,7 @@ class SPARSEMOCAP_PT_options(StepPanel, Panel):
         for index, option in enumerate(settings.options):
             row = column.row(align=True)
             split = row.split(factor=0.6, align=True)
-            split.label(text=option.name.replace("_", " "))
+            split.label(text=option.name.replace("_", " "), translate=False)
             split.prop(option, "value", text="")
             row.operator("sparse_mocap.remove_option", text="", icon="X").index = index
         self.layout.operator("sparse_mocap.add_option", icon="ADD")
@@ -174,8 +177,8 @@ def _performed(layout: UILayout, context: Context) -> None:
     rows = [
         ("Action", action.name),
         ("Duration", text.duration(facts.duration_s)),
-        ("Frames", f"{first:.0f} to {last:.0f}"),
-        ("Match", facts.match),
+        ("Frames", tr("{first} to {last}").format(first=f"{first:.0f}", last=f"{last:.0f}")),
+        ("Match", tr(facts.match)),
     ]
     text.facts(layout, rows)
     advice = advice_for(facts.match, is_guess=facts.is_guess)

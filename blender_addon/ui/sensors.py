@@ -8,6 +8,7 @@ from typing import Any
 from bpy.types import Context, UILayout
 
 from ..scene.settings import settings_of
+from ..scene.translations import tr
 from ..session.live import LiveState
 from ..session.names import shown_site
 from ..session.port_scanner import port_scanner
@@ -56,7 +57,8 @@ def table(layout: UILayout, context: Context, state: LiveState) -> None:
         text.error(layout, context, note)
     if state.shaking:
         row = layout.row()
-        row.label(text=f"Shake: {shown_site(state.shaking)}", icon="HAND")
+        shake = tr("Shake: {site}").format(site=tr(shown_site(state.shaking)))
+        row.label(text=shake, icon="HAND", translate=False)
         row.operator("sparse_mocap.shake_to_find", text="", icon="X").site = "none"
     elif state.sensors:
         layout.operator("sparse_mocap.shake_to_find", icon="HAND")
@@ -68,7 +70,8 @@ def _sensor(layout: UILayout, context: Context, sensor: dict[str, Any]) -> None:
     split.label(
         text=_shortened(str(sensor["identity"])), icon=_STATE_ICONS.get(sensor["state"], "ERROR")
     )
-    split.label(text="no data" if sensor["state"] != "live" else f"{sensor['rate_hz']:.0f} Hz")
+    is_silent = sensor["state"] != "live"
+    split.label(text="no data" if is_silent else f"{sensor['rate_hz']:.0f} Hz")
     row = column.row(align=True)
     is_worn = bool(sensor["site"])
     site = row.operator(
@@ -79,14 +82,17 @@ def _sensor(layout: UILayout, context: Context, sensor: dict[str, Any]) -> None:
     site.identity = str(sensor["identity"])
     lost, battery = sensor["missing"], sensor["battery"]
     if lost:
-        column.label(text=f"{lost} samples lost", icon="BLANK1")
+        missing = tr("{count} samples lost").format(count=lost)
+        column.label(text=missing, icon="BLANK1", translate=False)
     if battery is not None:
         is_low = battery < LOW_BATTERY_PERCENT
         line = column.row()
         line.alert = is_low
+        said = tr("Battery {percent} %: charge it" if is_low else "Battery {percent} %")
         line.label(
-            text=f"Battery {battery:.0f} %" + (": charge it" if is_low else ""),
+            text=said.format(percent=f"{battery:.0f}"),
             icon="ERROR" if is_low else "BLANK1",
+            translate=False,
         )
 
 

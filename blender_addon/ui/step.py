@@ -10,6 +10,7 @@ import bpy
 from bpy.types import UILayout
 
 from ..scene import compat
+from ..scene.translations import tr
 from ..session import job as jobs
 from ..session.file_cache import FileCache
 from ..session.job import Job
@@ -71,7 +72,8 @@ def _progress(layout: UILayout, job: Job) -> None:
         row.label(text=percent, icon="SORTTIME")
     row.operator("sparse_mocap.cancel", text="", icon="X")
     what = job.what if job.what.lower() not in job.label.lower() else ""
-    layout.label(text=what or f"{job.label}: press Esc to cancel")
+    how = tr("{job}: press Esc to cancel").format(job=tr(job.label))
+    layout.label(text=what or how)
 
 
 def redraw_soon() -> None:

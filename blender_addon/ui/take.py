@@ -10,7 +10,9 @@ from bpy.types import Context, Panel, UILayout, UIList
 
 from ..scene.settings import settings_of
 from ..scene.takes import is_missing
+from ..scene.translations import tr
 from ..session.core import missing_reason
+from ..session.names import shown_site
 from ..session.take import takes
 from . import text
 from .step import StepPanel, redraw_soon, tick
@@ -41,10 +43,10 @@ class SPARSEMOCAP_UL_takes(UIList):
         row.prop(item, "is_starred", text="", icon=star, emboss=False)
         split = row.split(factor=0.62, align=True)
         if is_missing(item):
-            split.label(text=item.name, icon="ERROR")
+            split.label(text=item.name, icon="ERROR", translate=False)
             split.label(text="missing")
             return
-        split.label(text=item.name)
+        split.label(text=item.name, translate=False)
         seconds = split.row(align=True)
         seconds.alignment = "RIGHT"
         seconds.label(text=text.duration(item.duration_s))
@@ -108,8 +110,8 @@ def _contents(layout: UILayout, context: Context, path: str) -> None:
                 ("Sensors", str(len(take.sensors))),
             ],
         )
-        names = ", ".join(name.replace("_", " ") for name in take.sensors)
-        text.paragraph(layout, context, names.capitalize())
+        names = ", ".join(tr(shown_site(name)) for name in take.sensors)
+        text.paragraph(layout, context, names)
 
 
 CLASSES = (SPARSEMOCAP_UL_takes, SPARSEMOCAP_PT_take)

@@ -9,6 +9,8 @@ from collections.abc import Callable
 import blf
 from bpy.types import Context, UILayout
 
+from ..scene.translations import tr
+
 _FONT = 0  # the interface's
 _MARGIN_PX = 58.0  # of panel and box, and the scroll bar
 _ICON_PX = 24.0
@@ -23,14 +25,14 @@ def paragraph(layout: UILayout, context: Context, text: str, icon: str = "NONE")
     room = width - _MARGIN_PX - (0.0 if icon == "NONE" else _ICON_PX)
     styles = context.preferences.ui_styles
     blf.size(_FONT, styles[0].widget.points if len(styles) else _USUAL_POINTS)
-    lines = wrapped(text, lambda line: blf.dimensions(_FONT, line)[0], max(room, _NARROWEST_PX))
+    lines = wrapped(tr(text), lambda line: blf.dimensions(_FONT, line)[0], max(room, _NARROWEST_PX))
     column = layout.column(align=True)
     column.scale_y = 0.8
     for index, line in enumerate(lines):
         if icon == "NONE":
-            column.label(text=line)
+            column.label(text=line, translate=False)
         else:
-            column.label(text=line, icon=icon if index == 0 else "BLANK1")
+            column.label(text=line, icon=icon if index == 0 else "BLANK1", translate=False)
 
 
 def wrapped(text: str, width_of: Callable[[str], float], room: float) -> list[str]:
@@ -53,13 +55,13 @@ def error(layout: UILayout, context: Context, text: str) -> None:
 
 
 def facts(layout: UILayout, rows: list[tuple[str, str]]) -> None:
-    """Show names and values in two columns."""
+    """Show names and values in two columns; values are shown as they are."""
     box = layout.box().column(align=True)
     box.scale_y = 0.85
     for name, value in rows:
         split = box.split(factor=0.42)
         split.label(text=name)
-        split.label(text=value)
+        split.label(text=value, translate=False)
 
 
 def shortened(text: str, num_characters: int = 120) -> str:

@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""German."""
+
+from __future__ import annotations
+
+from .german_labels import LABELS
+from .german_sentences import SENTENCES
+from .german_tooltips import TOOLTIPS
+
+TEXTS: dict[str, str] = {**LABELS, **SENTENCES, **TOOLTIPS}
+"""What to show for each English text; words in {braces} are filled in."""
