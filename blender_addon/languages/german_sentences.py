@@ -50,12 +50,12 @@ SENTENCES = {
         "Ohne Kalibrierung die Sensoren so tragen, wie es im README steht"
     ),
     "quality {quality}, {gravity} m/s² at rest": "Qualität {quality}, {gravity} m/s² in Ruhe",
-    "Recording: {duration}. It continues even if Blender quits": (
-        "Aufnahme läuft: {duration}. Sie geht weiter, auch wenn Blender endet"
+    "The recording continues even if Blender quits": (
+        "Die Aufnahme geht weiter, auch wenn Blender endet"
     ),
     "Saved: {path}": "Gespeichert: {path}",
     "{count} poses": "{count} Posen",
-    "{count} samples lost": "{count} Messwerte verloren",
+    "{count} lost": "{count} verloren",
     "Battery {percent} %": "Akku {percent} %",
     "Battery {percent} %: charge it": "Akku {percent} %: bitte laden",
     "Shake: {site}": "Schütteln: {site}",

@@ -12,6 +12,7 @@ import numpy as np
 from bpy.types import Context, Object
 
 from ..session import live
+from ..session.character import FootLock
 from ..session.core import core
 from ..session.errors import InputError
 from ..session.live_poses import Pose
@@ -31,7 +32,7 @@ from .axes import Floats, bone_quaternions, to_blender
 from .pose_memory import PoseMemory
 from .rig_pose import RigPose
 from .settings import settings_of
-from .targets import bound
+from .targets import bound, foot_lock_of
 
 TICK_S = 0.02
 _PANEL_S = 0.25
@@ -176,9 +177,11 @@ def tick() -> Pose | None:
     if pose is None:
         return None
     _followed.spread_m = pose.spread_m
-    shown = _followed.stage.shown(pose, in_place=settings_of(bpy.context.scene).in_place)
+    in_place = settings_of(bpy.context.scene).in_place
+    shown = _followed.stage.shown(pose, in_place=in_place)
     if _followed.rig is not None:
-        _followed.rig.show(armature, _motion(_followed.skeleton, shown))
+        lock = FootLock(strength=0.0) if in_place else foot_lock_of(bpy.context)
+        _followed.rig.show(armature, _motion(_followed.skeleton, shown), shown, lock)
     elif _followed.figure is not None:
         _show(armature, _followed.figure, shown)
     return pose

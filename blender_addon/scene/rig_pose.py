@@ -8,6 +8,9 @@ from typing import Any
 from bpy.types import Object
 from mathutils import Quaternion
 
+from ..session.character import FootLock
+from ..session.live_feet import LiveFootLock
+from ..session.live_poses import Pose
 from ..session.retarget import Target, tracks_of
 from .rig_probe import set_properties
 
@@ -18,18 +21,24 @@ class RigPose:
     def __init__(self, target: Target) -> None:
         self.target = target
         self.bones = target.bones
+        self._feet = LiveFootLock(target.character)
         self._lowest_m: float | None = None  # that an ankle was, above where it stands
 
     def begin(self, armature: Object) -> None:
         """Set the custom properties that the controls need."""
         set_properties(armature, self.target.controls.properties)
 
-    def show(self, armature: Object, motion: Any) -> None:
-        """Show a motion of one frame; the lowest foot so far stands on the floor."""
+    def show(self, armature: Object, motion: Any, pose: Pose, lock: FootLock) -> None:
+        """Show a motion of one frame, that of the pose; the lowest foot so far is on the floor."""
         character = self.target.character
-        moved = character.world(character.on_rig(motion))
+        on_rig = character.on_rig(motion)
+        moved = character.world(on_rig)
         above = float(moved.above_floor_m[0])
         self._lowest_m = above if self._lowest_m is None else min(self._lowest_m, above)
+        if lock.strength > 0.0 and character.has_feet:
+            legs = character.legs(on_rig)[0]
+            floor_m = character.ankle_m + self._lowest_m
+            moved = self._feet.shown(moved, legs, pose.contacts, pose.time_s, lock, floor_m)
         for track in tracks_of(
             self.target.controls, moved.lifted(self.target.floor_m - self._lowest_m)
         ):

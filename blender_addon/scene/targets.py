@@ -40,12 +40,7 @@ def placement_of(
     render, settings = context.scene.render, settings_of(context.scene)
     others = [editable(obj) for obj in armatures if not is_ours(obj)]
     targets = [bound(context, armature) for armature in others]
-    lock = FootLock(
-        settings.foot_lock,
-        settings.least_certainty,
-        settings.fastest_foot_mps,
-        settings.highest_foot_m,
-    )
+    lock = foot_lock_of(context)
     errors = (settings.largest_error_deg, settings.largest_error_cm)
     return Placement(
         start_frame,
@@ -56,6 +51,17 @@ def placement_of(
         largest_errors=errors if settings.reduce_keys else None,
         lock=lock,
         targets=tuple(targets),
+    )
+
+
+def foot_lock_of(context: Context) -> FootLock:
+    """The scene's choice of how feet are kept where they stand."""
+    settings = settings_of(context.scene)
+    return FootLock(
+        settings.foot_lock,
+        settings.least_certainty,
+        settings.fastest_foot_mps,
+        settings.highest_foot_m,
     )
 
 

@@ -17,7 +17,7 @@ from .errors import InputError, one_line
 
 Floats = NDArray[np.float64]
 
-_PELVIS, _THIGHS = "root", ("lfemur", "rfemur")
+_PELVIS, _THIGHS, _SHANKS = "root", ("lfemur", "rfemur"), ("ltibia", "rtibia")
 _HIGHEST_ANKLE = 0.15  # relative to the height of the hips
 _STANDING = 0.05  # of the frames: those in which an ankle is lowest show where the floor is
 
@@ -114,6 +114,19 @@ class Character:
         self._needed = _with_parents([*self._turned, *self._feet], self._parents)
         self._ankle_m = _ankle_height(body, self._feet)
 
+        self.leg_bones = tuple(self._leg_bones(names, foot) for foot in feet)
+        """For the left and the right leg: indices of the turned bones of thigh and of shank."""
+
+    def _leg_bones(self, names: list[str], foot: str) -> tuple[list[int], list[int]]:
+        """What turns with the thigh, and what with the shank; twist bones hang between them."""
+        path = _path_of(self._parents, names.index(foot))[1:]
+        side = 0 if foot == self._mapping.ankles[0] else 1
+        thigh, knee = self._thighs[side], names.index(self.joints[_SHANKS[side]])
+        shank = [bone for bone in path[: path.index(knee) + 1] if bone in self._turned]
+        upper = path[path.index(knee) + 1 : path.index(thigh) + 1]
+        turned = [bone for bone in upper if bone in self._turned]
+        return [self._turned.index(b) for b in turned], [self._turned.index(b) for b in shank]
+
     @property
     def top(self) -> str:
         """The bone on which all others of the body hang."""
@@ -160,6 +173,36 @@ class Character:
 
     def world(self, moved: Any) -> RigMotion:
         """Where a motion on this rig turns the bones."""
+        world, positions = self._posed(moved)
+        hips = np.mean([positions[thigh] for thigh in self._thighs], axis=0)
+        rotations = np.stack([world[joint] for joint in self._turned], axis=1)
+        ankles = [positions[foot][:, 1] for foot in self._feet]
+        lowest = np.min(ankles, axis=0) if ankles else np.full(len(hips), self._ankle_m)
+        return RigMotion(moved.frame_time_s, rotations, hips, lowest - self._ankle_m)
+
+    @property
+    def has_feet(self) -> bool:
+        """Whether both legs end in a foot."""
+        return len(self._feet) == 2
+
+    @property
+    def ankle_m(self) -> float:
+        """How high ankles are while the feet stand on the floor."""
+        return self._ankle_m
+
+    def legs(self, moved: Any) -> Floats:
+        """(T, 2, 3, 3) where hips, knees and ankles are, left and right, on a rig with feet."""
+        _, positions = self._posed(moved)
+        names = list(self._skeleton.names)
+        knees = [names.index(self.joints[shank]) for shank in _SHANKS]
+        points = [
+            [positions[bone] for bone in leg]
+            for leg in zip(self._thighs, knees, self._feet, strict=True)
+        ]
+        return np.moveaxis(np.array(points), 2, 0)
+
+    def _posed(self, moved: Any) -> tuple[dict[int, Floats], dict[int, Floats]]:
+        """(T, 3, 3) and (T, 3) of the needed bones in the character's space."""
         local = _matrices(moved.rotations)
         world: dict[int, Floats] = {}
         positions: dict[int, Floats] = {0: np.asarray(moved.root_positions)}
@@ -169,11 +212,7 @@ class Character:
             if parent >= 0:
                 offset = self._pivots[joint] - self._pivots[parent]
                 positions[joint] = positions[parent] + world[parent] @ offset
-        hips = np.mean([positions[thigh] for thigh in self._thighs], axis=0)
-        rotations = np.stack([world[joint] for joint in self._turned], axis=1)
-        ankles = [positions[foot][:, 1] for foot in self._feet]
-        lowest = np.min(ankles, axis=0) if ankles else np.full(len(hips), self._ankle_m)
-        return RigMotion(moved.frame_time_s, rotations, hips, lowest - self._ankle_m)
+        return world, positions
 
 
 def still_motion(bones: list[RestBone]) -> Any:
@@ -216,10 +255,15 @@ def _ankle_height(body: list[RestBone], feet: list[int]) -> float:
 
 def _path(bones: list[RestBone], bone: int) -> list[int]:
     """The bone and all that it hangs on."""
+    return _path_of([one.parent for one in bones], bone)
+
+
+def _path_of(parents: list[int], bone: int) -> list[int]:
+    """The bone and all that it hangs on."""
     path = []
     while bone >= 0:
         path.append(bone)
-        bone = bones[bone].parent
+        bone = parents[bone]
     return path
 
 

@@ -31,6 +31,8 @@ class Pose:
     """When the sensors read it, on the machine's monotonic clock."""
     spread_m: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
     """(J,) how far the retrieved poses deviate; (0,) where the method tells nothing."""
+    contacts: tuple[float, ...] = ()
+    """How certain it is that the left and the right foot stand."""
 
 
 @dataclass(frozen=True)
@@ -113,4 +115,5 @@ class LivePoses:
             np.array(estimate.root_position),
             estimate.time_s,
             np.array(estimate.diagnostics.get("spread_m", ())),
+            tuple(float(contact) for contact in estimate.contacts),
         )

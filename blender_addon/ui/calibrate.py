@@ -23,6 +23,7 @@ class SPARSEMOCAP_PT_calibration(StepPanel, Panel):
     bl_idname = "SPARSEMOCAP_PT_calibration"
     bl_parent_id = "SPARSEMOCAP_PT_live"
     bl_label = "Calibration"
+    bl_order = 1
 
     def draw_header_preset(self, context: Context) -> None:
         """A check mark when a calibration is loaded."""

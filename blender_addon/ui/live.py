@@ -6,6 +6,7 @@ from __future__ import annotations
 from bpy.types import Context, Panel, UILayout
 
 from ..scene import live as live_scene
+from ..scene.armature import is_ours
 from ..scene.settings import settings_of
 from ..scene.translations import tr
 from ..session import live, sensors
@@ -74,6 +75,7 @@ def _choices(layout: UILayout, context: Context) -> None:
 
 
 def _session(layout: UILayout, context: Context, session: LiveSession) -> None:
+    """The connected sensors. Rows keep their places: what comes and goes is in the last panel."""
     state = session.state
     row = layout.row()
     icon = "LINKED" if state.is_connected else "SORTTIME"
@@ -82,41 +84,12 @@ def _session(layout: UILayout, context: Context, session: LiveSession) -> None:
     if not state.is_connected:
         layout.label(text="Connecting")
         return
-    sensor_panels.links(layout, context, state)
-    sensor_panels.table(layout, context, state)
-    _live(layout, context, session)
-    if not job_is_running(CALIBRATING):
-        _recording(layout, context, state)
-
-
-def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
-    state, quality = session.state, session.state.quality
-    has_database = bool(settings_of(context.scene).database)
+    sensor_panels.links(layout, state)
+    sensor_panels.table(layout, state)
     _character(layout, context)
-    if session.is_live_wanted:
-        row = layout.row()
-        row.scale_y = 1.5
-        row.operator("sparse_mocap.leave_live", icon="PAUSE", depress=True)
-    else:
-        is_ready = has_database and bool(state.sensors)
-        action_button(
-            layout, "sparse_mocap.go_live", "PLAY", sensors.STARTING_LIVE, is_ready=is_ready
-        )
-        if not has_database:
-            text.paragraph(layout, context, "Choose a motion database first", icon="INFO")
-    if state.no_readings and session.is_live_wanted:
-        text.error(layout, context, state.no_readings)
-    if state.warning and session.is_live_wanted:
-        text.error(layout, context, state.warning)
-    if session.is_live_wanted and quality.num_poses and not state.no_readings:
-        rows = [
-            ("Match", tr(quality.match)),
-            ("Delay", f"{1e3 * quality.latency_s:.0f} ms"),
-        ]
-        dropped = quality.num_skipped + state.num_dropped
-        if dropped:
-            rows.append(("Skipped", tr("{count} poses").format(count=dropped)))
-        text.facts(layout, rows)
+    _live(layout, context, session)
+    _recording(layout, context, state)
+    _figures(layout, session)
 
 
 def _character(layout: UILayout, context: Context) -> None:
@@ -125,38 +98,99 @@ def _character(layout: UILayout, context: Context) -> None:
     row = layout.row()
     row.enabled = not is_followed
     row.prop(settings, "target", icon="ARMATURE_DATA")
+    row = layout.row()
+    row.enabled = settings.target is not None and not is_ours(settings.target)
+    row.prop(settings, "foot_lock")
     row = layout.row(align=True)
     row.prop(settings, "in_place", toggle=True)
     buttons = row.row(align=True)
     buttons.enabled = is_followed
     buttons.operator("sparse_mocap.recentre")
     buttons.operator("sparse_mocap.face_front")
-    if live_scene.ended_because():
-        text.error(layout, context, live_scene.ended_because())
+
+
+def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
+    reason = ""
+    if not settings_of(context.scene).database:
+        reason = "Choose a motion database first"
+    elif not session.state.sensors:
+        reason = "Waiting for data"
+    if session.is_live_wanted:
+        row = layout.row()
+        row.scale_y = 1.5
+        row.operator("sparse_mocap.leave_live", icon="PAUSE", depress=True)
+    else:
+        action_button(
+            layout, "sparse_mocap.go_live", "PLAY", sensors.STARTING_LIVE,
+            is_ready=not reason, has_details=False,
+        )  # fmt: skip
+    layout.label(text=reason, icon="INFO" if reason else "NONE")
 
 
 def _recording(layout: UILayout, context: Context, state: LiveState) -> None:
-    if state.recording is None:
+    settings, is_recording = settings_of(context.scene), state.recording is not None
+    if is_recording or job_is_running(sensors.SAVING_TAKE):
+        action_button(
+            layout, "sparse_mocap.stop_take", "SNAP_FACE", sensors.SAVING_TAKE,
+            is_ready=True, has_details=False,
+        )  # fmt: skip
+    else:
         row = layout.row()
         row.scale_y = 1.5
+        row.enabled = not job_is_running(CALIBRATING)
         row.operator("sparse_mocap.record_or_stop", text="Record", icon="REC")
-        settings = settings_of(context.scene)
-        row = layout.row(align=True)
-        row.prop(settings, "countdown_s")
-        row.prop(settings, "record_plays", text="", icon="PLAY", toggle=True)
-    else:
-        action_button(
-            layout, "sparse_mocap.stop_take", "SNAP_FACE", sensors.SAVING_TAKE, is_ready=True
-        )
-        text.paragraph(
-            layout,
-            context,
-            tr("Recording: {duration}. It continues even if Blender quits").format(
-                duration=text.duration(state.recording["seconds"])
-            ),
-            icon="REC",
-        )
-    _last_take(layout, context)
+    row = layout.row(align=True)
+    row.enabled = not is_recording
+    row.prop(settings, "countdown_s")
+    row.prop(settings, "record_plays", text="", icon="PLAY", toggle=True)
+
+
+def _figures(layout: UILayout, session: LiveSession) -> None:
+    """Always the same rows."""
+    state, quality = session.state, session.state.quality
+    is_shown = session.is_live_wanted and quality.num_poses > 0 and not state.no_readings
+    skipped = tr("{count} poses").format(count=quality.num_skipped + state.num_dropped)
+    recorded = text.duration(state.recording["seconds"]) if state.recording is not None else "-"
+    rows = [
+        ("Match", tr(quality.match) if is_shown else "-"),
+        ("Delay", f"{1e3 * quality.latency_s:.0f} ms" if is_shown else "-"),
+        ("Skipped", skipped if is_shown else "-"),
+        ("Recorded", recorded),
+    ]
+    text.facts(layout, rows)
+
+
+class SPARSEMOCAP_PT_live_messages(StepPanel, Panel):
+    """What is wrong or new: behind everything that can be pressed, so that it moves nothing."""
+
+    bl_idname = "SPARSEMOCAP_PT_live_messages"
+    bl_parent_id = "SPARSEMOCAP_PT_live"
+    bl_label = "Messages"
+    bl_order = 2
+
+    @classmethod
+    def poll(cls, context: Context) -> bool:
+        """Only while sensors are connected."""
+        session = live.current()
+        return session is not None and session.is_running and session.state.is_connected
+
+    def draw(self, context: Context) -> None:
+        """The messages."""
+        session = live.current()
+        if session is None:
+            return
+        layout, state = self.layout, session.state
+        problems = [*state.notes, live_scene.ended_because()]
+        if session.is_live_wanted:
+            problems += [state.no_readings, state.warning]
+        for problem in filter(None, problems):
+            text.error(layout, context, problem)
+        for link in state.links:
+            if link["message"]:
+                text.paragraph(layout, context, str(link["message"]), icon="INFO")
+        if state.recording is not None:
+            text.paragraph(layout, context, "The recording continues even if Blender quits", "REC")
+        _last_take(layout, context)
 
 
 def _last_take(layout: UILayout, context: Context) -> None:
@@ -166,3 +200,4 @@ def _last_take(layout: UILayout, context: Context) -> None:
 
 
 CLASSES = (SPARSEMOCAP_PT_live,)
+MESSAGES = (SPARSEMOCAP_PT_live_messages,)

@@ -13,6 +13,7 @@ CLASSES = (
     *reconstruct.CLASSES,
     *live.CLASSES,
     *calibrate.CLASSES,
+    *live.MESSAGES,
     *mapping.CLASSES,
     *help.CLASSES,
 )

@@ -32,39 +32,34 @@ def ports(layout: UILayout, context: Context) -> None:
         column.prop(settings, "sites", text="Locations")
 
 
-def links(layout: UILayout, context: Context, state: LiveState) -> None:
-    """Each connected port with its protocol and state."""
+def links(layout: UILayout, state: LiveState) -> None:
+    """Each connected port with its protocol and state: two rows each."""
     for link in state.links:
         row = layout.row(align=True)
         icon = _LINK_ICONS.get(str(link["state"]), "SORTTIME")
         row.label(text=_port_name(str(link["opened_as"] or link["port"])), icon=icon)
-        row.label(text=str(link["driver"]))
-        message = str(link["message"])
-        if message:
-            text.paragraph(layout, context, message, icon="INFO")
-        elif link["state"] != "streaming":
-            layout.label(text=str(link["state"]).capitalize(), icon="BLANK1")
+        row.label(text=str(link["driver"]), translate=False)
+        layout.label(text=str(link["message"] or link["state"].capitalize()), icon="BLANK1")
 
 
-def table(layout: UILayout, context: Context, state: LiveState) -> None:
-    """Each sensor with its body part, rate and battery."""
+def table(layout: UILayout, state: LiveState) -> None:
+    """Each sensor with its body part, rate and battery: three rows each."""
     box = layout.box()
     for sensor in state.sensors:
-        _sensor(box, context, sensor)
+        _sensor(box, sensor)
     if not state.sensors:
         box.label(text="Waiting for data", icon="SORTTIME")
-    for note in state.notes:
-        text.error(layout, context, note)
+    row = layout.row()
     if state.shaking:
-        row = layout.row()
         shake = tr("Shake: {site}").format(site=tr(shown_site(state.shaking)))
         row.label(text=shake, icon="HAND", translate=False)
         row.operator("sparse_mocap.shake_to_find", text="", icon="X").site = "none"
-    elif state.sensors:
-        layout.operator("sparse_mocap.shake_to_find", icon="HAND")
+    else:
+        row.enabled = bool(state.sensors)
+        row.operator("sparse_mocap.shake_to_find", icon="HAND")
 
 
-def _sensor(layout: UILayout, context: Context, sensor: dict[str, Any]) -> None:
+def _sensor(layout: UILayout, sensor: dict[str, Any]) -> None:
     column = layout.column(align=True)
     split = column.split(factor=0.62)
     split.label(
@@ -80,20 +75,15 @@ def _sensor(layout: UILayout, context: Context, sensor: dict[str, Any]) -> None:
         icon="DOWNARROW_HLT",
     )
     site.identity = str(sensor["identity"])
-    lost, battery = sensor["missing"], sensor["battery"]
-    if lost:
-        missing = tr("{count} samples lost").format(count=lost)
-        column.label(text=missing, icon="BLANK1", translate=False)
+    battery = sensor["battery"]
+    is_low = battery is not None and battery < LOW_BATTERY_PERCENT
+    line = column.row()
+    line.alert = is_low
+    lost = tr("{count} lost").format(count=sensor["missing"])
     if battery is not None:
-        is_low = battery < LOW_BATTERY_PERCENT
-        line = column.row()
-        line.alert = is_low
         said = tr("Battery {percent} %: charge it" if is_low else "Battery {percent} %")
-        line.label(
-            text=said.format(percent=f"{battery:.0f}"),
-            icon="ERROR" if is_low else "BLANK1",
-            translate=False,
-        )
+        lost = f"{said.format(percent=f'{battery:.0f}')}, {lost}"
+    line.label(text=lost, icon="ERROR" if is_low else "BLANK1", translate=False)
 
 
 def _port(layout: UILayout, context: Context, port: Any, index: int) -> None:

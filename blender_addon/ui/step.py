@@ -48,11 +48,17 @@ def action_button(
     *,
     is_ready: bool,
     is_main: bool = True,
+    has_details: bool = True,
 ) -> None:
-    """A job's button, replaced by the progress while it runs; large if it is the main one."""
+    """A job's button, replaced by the progress while it runs; large if it is the main one.
+
+    has_details: whether a line below the progress says what is being done.
+    """
     job = jobs.current()
     if job is not None and job_is_running(job_label):
         _progress(layout, job)
+        if has_details:
+            _details(layout, job)
         return
     row = layout.row()
     row.scale_y = 1.5 if is_main else 1.0
@@ -71,6 +77,9 @@ def _progress(layout: UILayout, job: Job) -> None:
     else:
         row.label(text=percent, icon="SORTTIME")
     row.operator("sparse_mocap.cancel", text="", icon="X")
+
+
+def _details(layout: UILayout, job: Job) -> None:
     what = job.what if job.what.lower() not in job.label.lower() else ""
     how = tr("{job}: press Esc to cancel").format(job=tr(job.label))
     layout.label(text=what or how)

@@ -54,6 +54,7 @@ def test_a_rigify_character_follows_and_is_as_before_afterwards(tmp_path):
     import sparse_mocap
 
     armature = rigs.rigify_rig()
+    settings().foot_lock = 0.0  # limbs are compared with the solver's
     with connected(tmp_path) as session:
         _with_action(armature, "torso")
         before = _state(armature)
@@ -93,6 +94,49 @@ def test_the_feet_stand_on_the_floor(tmp_path):
             bpy.context.view_layer.update()
             lows.append(min(armature.pose.bones[name].head.z for name in feet))
         assert abs(min(lows) - (standing - sole)) < 1e-3
+
+
+def test_standing_feet_stay_where_they_are(tmp_path):
+    """In the same live preview of a walk, with and without foot lock."""
+    speeds = {}
+    with connected(tmp_path):
+        armature = rigs.named_rig("mixamo")
+        feet = ("mixamorig:LeftFoot", "mixamorig:RightFoot")
+        for lock in (0.0, 1.0):
+            settings().foot_lock = lock
+            _go_live(armature)
+            times, places, stands = [], [], []
+            for _ in range(60):
+                pose = _ticked(1)[0][0]
+                bpy.context.view_layer.update()
+                times.append(pose.time_s)
+                places.append([np.array(armature.pose.bones[name].head) for name in feet])
+                stands.append([contact > 0.6 for contact in pose.contacts])
+            steps = np.linalg.norm(np.diff(places, axis=0), axis=-1)
+            fast = steps / np.diff(times)[:, None]
+            both = np.array(stands)[1:] & np.array(stands)[:-1] & (fast < 0.5)
+            speeds[lock] = fast[both]
+            assert bpy.ops.sparse_mocap.leave_live() == {"FINISHED"}
+    medians = {lock: 100 * np.median(found) for lock, found in speeds.items()}
+    print(f"standing feet live: {medians[0.0]:.1f} cm/s, locked {medians[1.0]:.1f} cm/s")
+    assert len(speeds[1.0]) > 20
+    assert medians[1.0] < 1.0
+    assert medians[1.0] < medians[0.0]
+
+
+def test_playing_the_timeline_leaves_the_live_pose(tmp_path):
+    with connected(tmp_path):
+        armature = rigs.named_rig("mixamo")
+        _go_live(armature)
+        _ticked(5)
+        bpy.context.view_layer.update()
+        before = np.array(armature.pose.bones["mixamorig:LeftFoot"].matrix)
+        for frame in range(1, 6):
+            bpy.context.scene.frame_set(frame)
+        assert (
+            np.abs(np.array(armature.pose.bones["mixamorig:LeftFoot"].matrix) - before).max() < 1e-6
+        )
+        _ticked(2)
 
 
 def test_a_renamed_or_deleted_bone_ends_it_with_a_word(tmp_path):

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 import sparse_mocap
+from sparse_mocap.capture.link import State
 
 from blender_addon.languages import german
 from blender_addon.session import (
@@ -104,6 +105,7 @@ def known_texts() -> list[str]:
         *mapping.LABELS.values(),
         *(shown_site(site) for site in sparse_mocap.site_names()),
         *(found.terms for found in FREE_MOTIONS),
+        *(state.value.capitalize() for state in State),
         *("good", "fair", "poor", "missing", "no data"),
     ]
 
