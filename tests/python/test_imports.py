@@ -225,6 +225,7 @@ def zip_of(path: Path, name: str, text: bytes) -> Path:
 
 def peak_mb(recording: Path) -> float:
     """The memory that refusing a recording takes, in a process of its own."""
+    pytest.importorskip("resource", reason="Windows does not tell how much memory was used")
     script = (
         "import resource, sys\nfrom sparse_mocap.imports import RecordingError, read_recording\n"
         "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"

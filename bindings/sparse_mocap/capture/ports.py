@@ -160,7 +160,8 @@ def _explained(port: str, error: Exception) -> str:
 def _error_number(error: Exception) -> int | None:
     """The error's errno, which pyserial often has only in the message."""
     number = getattr(error, "errno", None)
-    found = re.search(r"\[Errno (-?\d+)\]|: \((\d+), '", str(error))
+    # What Windows' sockets report is an errno there; its other numbers are not.
+    found = re.search(r"\[Errno (-?\d+)\]|\[WinError (1\d{4})\]|: \((\d+), '", str(error))
     if number is None and found:
-        number = int(found[1] or found[2])
+        number = int(found[found.lastindex or 0])
     return number

@@ -61,6 +61,7 @@ class SampleLogWriter:
         self._folder = folder
         self.num_samples = 0
         self._oldest = 0
+        self._old: list[int] = []  # files that are not deleted yet
         self._begin_file(0)
 
     def append(self, samples: Samples) -> None:
@@ -76,11 +77,13 @@ class SampleLogWriter:
             self.num_samples += len(part)
 
     def remove_old(self) -> None:
-        """Deletes all but the newest full files."""
-        while self._oldest < self._number - MOST_SPARE:
-            with suppress(OSError):  # on Windows, a file that is being read cannot be removed
-                log_path(self._folder, self._oldest).unlink()
-            self._oldest += 1
+        """Deletes all but the newest full files, on Windows once nobody reads them any more."""
+        self._old += range(self._oldest, self._number - MOST_SPARE)
+        self._oldest = max(self._oldest, self._number - MOST_SPARE)
+        for number in list(self._old):
+            with suppress(OSError):
+                log_path(self._folder, number).unlink(missing_ok=True)
+                self._old.remove(number)
 
     def close(self) -> None:
         """Syncs and closes."""
@@ -142,7 +145,7 @@ class SampleLogReader:
         self._file.close()
 
     def _is_there(self) -> bool:
-        """Opens the file of the next sample, or the oldest one if that was deleted."""
+        """Opens the file of the next sample, or the one after it if that was deleted."""
         number = self.position // PER_FILE
         if number == self._number:
             return True
@@ -150,7 +153,7 @@ class SampleLogReader:
         if not numbers or number > max(numbers):
             return False
         try:
-            self._open(number if number in numbers else min(numbers))
+            self._open(min(there for there in numbers if there >= number))
         except (FileNotFoundError, ValueError):  # just deleted, or just created
             return False
         self.position = max(self.position, self._number * PER_FILE)
