@@ -71,6 +71,26 @@ def test_works_without_the_sources():
     assert Path(os.environ["BLENDER_USER_RESOURCES"]) in where.parents
 
 
+def test_nothing_is_written_into_its_own_folder():
+    _needs_package()
+    choose_files()
+    reconstruct()
+    folder = Path(installed.module().__file__).parent
+    found = {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file() and path.suffix != ".pyc"  # Python puts these beside each module
+    }
+    with zipfile.ZipFile(installed.PACKAGE) as archive:
+        released = {
+            name.removeprefix(f"{installed.ADDON}/"): archive.read(name)
+            for name in archive.namelist()
+            if not name.endswith("/")
+        }
+    names = sorted(found.keys() | released.keys())
+    assert [name for name in names if found.get(name) != released.get(name)] == []
+
+
 def test_an_upgrade_replaces_all_files(tmp_path):
     _needs_package()
     files = _files()
