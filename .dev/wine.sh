@@ -145,6 +145,7 @@ in_wine() {
     set +e
     env -u DISPLAY WINEPREFIX="$WINE_BUILD/wine" WINEARCH=win64 WINEDEBUG=-all LC_ALL=C.UTF-8 \
       WINEDLLOVERRIDES='mscoree,mshtml=' PYTHONNOUSERSITE=1 PYTHONDONTWRITEBYTECODE=1 \
+      PYTHONUNBUFFERED=1 \
       /usr/lib/wine/wine64 "$@" 2>&1
     echo $? >"$wine_status"
   } | sed -u 's/\r$//'

@@ -322,8 +322,11 @@ def test_a_pyproject_that_cannot_be_moved_is_told(tmp_path: Path) -> None:
 def test_what_is_written_is_listed_with_its_hash(made: release.Release, tmp_path: Path) -> None:
     (tmp_path / "sparse_mocap-0.0.9.zip").write_bytes(b"of an earlier run")
     headers = tmp_path / "headers" / "linux-x64-3.14"
-    headers.mkdir(parents=True)
+    (headers / "cpython").mkdir(parents=True)
+    (headers / "cpython" / "code.h").write_text("int code;\n")
     (headers / "patchlevel.h").write_text('#define PY_MAJOR 3\n#define PY_VERSION    "3.14.8"\n')
+    words = "find -type f -printf '%P\\n' | LC_ALL=C sort | xargs sha256sum | sha256sum"
+    header_hash = subprocess.check_output(words, shell=True, cwd=headers, text=True).split()[0]
     made = dataclasses.replace(made, headers=release.header_versions(headers.parent))
     shutil.rmtree(headers.parent)
     release.write_release(made, tmp_path)
@@ -335,7 +338,7 @@ def test_what_is_written_is_listed_with_its_hash(made: release.Release, tmp_path
     assert report["version"] == made.version
     assert {module["name"] for module in report["modules"]} == {MODULE_311, MODULE_313}
     assert report["files"].keys() == set(made.files)
-    assert report["headers"] == {"linux-x64-3.14": "3.14.8"}
+    assert report["headers"] == {"linux-x64-3.14": f"3.14.8, SHA-256 {header_hash}"}
     assert len(report["checks"]) == 5  # three wheels of ours, that of pyserial, the hashes
     assert len(list(release.table(made))) == 2 + 5 + 1 + 5
 

@@ -52,7 +52,8 @@ class Release:
     files: dict[str, Made] = field(default_factory=dict)
     checks: list[str] = field(default_factory=list)
     headers: dict[str, str] = field(default_factory=dict)
-    """The exact version of the headers by which the modules were compiled, such as 3.14.8."""
+    """The exact version of the headers by which the modules were compiled, such as 3.14.8, and
+    their hash."""
 
     def add(self, name: str, make: Callable[[], bytes]) -> bytes:
         """Make a file, and remember it and how long it took."""
@@ -178,12 +179,22 @@ def write_release(release: Release, output: Path) -> None:
 
 
 def header_versions(folder: Path) -> dict[str, str]:
-    """The versions of CPython's headers, by the names of the folders that hold them."""
+    """The version and hash of CPython's headers, by the names of the folders that hold them."""
     found = {}
     for path in sorted(folder.glob("*/patchlevel.h")):
         version = re.search(r'#define PY_VERSION\s+"([^"]+)"', path.read_text("utf-8"))
-        found[path.parent.name] = version[1] if version else "unknown"
+        found[path.parent.name] = f"{version[1] if version else 'unknown'}, {_hash(path.parent)}"
     return found
+
+
+def _hash(folder: Path) -> str:
+    """The hash of the list that sha256sum makes of all files in a folder, sorted by their names."""
+    files = {p.relative_to(folder).as_posix(): p for p in folder.rglob("*") if p.is_file()}
+    listed = [
+        f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {name}\n"
+        for name, path in sorted(files.items())
+    ]
+    return f"SHA-256 {hashlib.sha256(''.join(listed).encode()).hexdigest()}"
 
 
 def table(release: Release) -> Iterator[str]:
