@@ -6,7 +6,7 @@
 
 # NumPy 2.2 and later need a function that Wine 8 lacks, ucrtbase.crealf.
 WINDOWS_PACKAGES_FOR_TESTS='bvhio==1.5.4 click==8.5.1 colorama==0.4.6 matplotlib==3.9.2 pybvh==0.9.0
-  pyserial==3.5 pytest==9.2.0 rich==15.0.0 scipy==1.14.1 tzdata xxhash==4.1.0'
+  pyparsing==3.2.5 pyserial==3.5 pytest==9.2.0 rich==15.0.0 scipy==1.14.1 tzdata xxhash==4.1.0'
 WINDOWS_BPY='bpy==4.5.15 numpy==1.26.4'
 WINE_BUILD=$ROOT/build/windows
 export SPARSE_MOCAP_WINE_DEVICES="$WINE_BUILD/wine/dosdevices"
@@ -38,8 +38,7 @@ test_windows() {
     suite "CPython $version for Windows" test_windows_python "$version"
   done
   suite 'bpy 4.5 for Windows' test_windows_bpy
-  suite 'Windows beside Linux' python -m pytest -q -rA -p no:cacheprovider \
-    -c "$ROOT/bindings/pyproject.toml" --rootdir "$ROOT" "$ROOT/tests/windows"
+  suite 'Windows beside Linux' test_windows_beside_linux
   echo "$passed passed, $failed failed, $skipped skipped"
   note_tested_modules
   [ "$failed" -eq 0 ]
@@ -67,6 +66,13 @@ test_windows_bpy() {
     SPARSE_MOCAP_TEST_PATH="$(windows_path 3.11)" \
     PYTHONPATH="$(windows_folders "$(windows_site 3.11 "$WINDOWS_BPY")" "$ROOT/tests/windows/wine")" \
     in_wine "$(windows_python 3.11)/python.exe" tests/blender/run.py || :
+}
+
+# test_windows_beside_linux: on this side too with what was packed.
+test_windows_beside_linux() {
+  unpack_wheel cp311
+  PYTHONPATH="$PACKAGE_BUILD/installed" python -m pytest -q -rA -p no:cacheprovider \
+    -c "$ROOT/bindings/pyproject.toml" --rootdir "$ROOT" "$ROOT/tests/windows"
 }
 
 # --- Packages ------------------------------------------------------------------------------------

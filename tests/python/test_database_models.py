@@ -131,7 +131,7 @@ def test_tensors_are_copied_whatever_their_memory() -> None:
         (("m", {"x": np.array([np.nan])}), "not a number"),
         (("m", {"x": np.array(["text"])}), "convert it with astype"),
         (("m", {"x": np.ones(2, ">f8")}), "convert it with astype"),
-        (("m", {"x": np.ones(2, np.longdouble)}), "convert it with astype"),
+        (("m", {"x": np.ones(2, complex)}), "convert it with astype"),
     ],
 )
 def test_what_is_no_model_is_refused(arguments: tuple[Any, Any], part: str) -> None:

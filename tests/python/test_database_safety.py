@@ -136,6 +136,7 @@ def test_a_motion_file_is_never_written_over(cli: Cli, folders: Path) -> None:
     assert motion.read_bytes() == before
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="all names are Unicode there")
 def test_names_that_are_not_utf8_end_no_folder(cli: Cli, folders: Path) -> None:
     source = min((folders / "ada").iterdir())
     odd = os.fsencode(folders / "ada") + b"/ada_caf\xe9_07.bvh"

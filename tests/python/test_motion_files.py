@@ -143,4 +143,4 @@ def test_files_of_other_formats_are_counted(cli: Cli, tmp_path: Path) -> None:
     result = cli("database", "build", folder, "-o", tmp_path / "db.smdb")
     assert result.exit_code == 0, result.output
     assert "4 files of other formats were not read" in result.stderr
-    assert ".c3d: solve it onto a skeleton" in result.stderr
+    assert ".c3d, .trc: solve it onto a skeleton" in result.stderr

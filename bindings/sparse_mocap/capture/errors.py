@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import os
 import shlex
+import subprocess
+import sys
 
 __all__ = ["CaptureError", "LogError", "PortError", "RecordingError", "recover_command"]
 
@@ -27,4 +29,6 @@ class RecordingError(CaptureError):
 
 def recover_command(folder: str | os.PathLike[str]) -> str:
     """The command that saves what a capture received, from the folder of its logs."""
-    return f"sparse-mocap record --recover {shlex.quote(os.fspath(folder))} -o TAKE.csv"
+    path = os.fspath(folder)
+    quoted = subprocess.list2cmdline([path]) if sys.platform == "win32" else shlex.quote(path)
+    return f"sparse-mocap record --recover {quoted} -o TAKE.csv"

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import json
 import tempfile
@@ -26,6 +27,7 @@ from ..evaluation import (
     variants,
 )
 from ..evaluation import evaluate as run_evaluation
+from ..files import remove_folder
 from ..methods import DEFAULT_METHOD, Experiment, method_info, methods, renamed_preset
 from .console import ProgressCallback, print_table, progress_bar, warn, write_json
 from .options import PAPER_SITES, FilePath, OutputPath, Sites, noise_option, seed_option, set_option
@@ -179,7 +181,10 @@ def _database(
     source: Path, cache: Path | None, progress: ProgressCallback
 ) -> Iterator[MotionDatabase]:
     """Yields the folder's database with mirrored copies, from the cache if nothing has changed."""
-    with tempfile.TemporaryDirectory(prefix="sparse_mocap_") as temporary:
+    with tempfile.TemporaryDirectory(
+        prefix="sparse_mocap_", ignore_cleanup_errors=True
+    ) as temporary:
+        atexit.register(remove_folder, temporary)  # Windows removes no database that is open
         path = Path(temporary) / "evaluation.smdb"
         if cache is not None:
             cache.mkdir(parents=True, exist_ok=True)

@@ -15,7 +15,7 @@ import click
 from .. import write_take
 from ..capture.client import CaptureClient, start_capture
 from ..capture.config import CaptureConfig
-from ..capture.errors import CaptureError
+from ..capture.errors import CaptureError, recover_command
 from ..capture.recording import RecordedTake, recording_to_take
 from ..capture.session import sessions
 from ..files import remove_folder
@@ -118,8 +118,8 @@ def _started(config: CaptureConfig, folder: Path) -> CaptureClient:
         raise CaptureError(f"{folder}: already recording; continue it with --attach {running.pid}")
     if folder.exists() and any(folder.iterdir()):
         raise CaptureError(
-            f"{folder}: contains a recording that was not saved as a take; save it with "
-            f"--recover {folder}, or delete the folder"
+            f"{folder}: contains a recording that was not saved as a take; delete the folder, or "
+            f"save it with: {recover_command(folder)}"
         )
     return start_capture(replace(config, must_record=True), folder)
 

@@ -124,7 +124,7 @@ std::string hash_of_file(const fs::path& path) { return checksum(map_file(path)-
 
 std::string other_formats_in(const std::vector<fs::path>& sources, const ReadOptions& options) {
   std::map<std::string, int> counts;
-  std::map<std::string, std::string> remedies;  // by what to do: the endings
+  std::map<std::string, std::string> remedy_of;  // by ending
   int total = 0;
   for (const auto& source : sources) {
     if (!fs::is_directory(source)) continue;
@@ -135,14 +135,18 @@ std::string other_formats_in(const std::vector<fs::path>& sources, const ReadOpt
       if (other == nullptr || !entry.is_regular_file(unreadable)) continue;
       if (is_motion_file(entry.path(), options)) continue;
       ++total;
-      if (++counts[std::string(other->mark)] > 1) continue;
-      std::string& endings = remedies[other->remedy];
-      endings += (endings.empty() ? "" : ", ") + std::string(other->mark);
+      ++counts[std::string(other->mark)];
+      remedy_of[std::string(other->mark)] = other->remedy;
     }
   }
   if (total == 0) return "";
   std::string line = std::to_string(total) + " files of other formats were not read:";
   for (const auto& [ending, count] : counts) line += " " + std::to_string(count) + " " + ending;
+  std::map<std::string, std::string> remedies;  // by what to do: the endings
+  for (const auto& [ending, remedy] : remedy_of) {
+    std::string& endings = remedies[remedy];
+    endings += (endings.empty() ? "" : ", ") + ending;
+  }
   for (const auto& [remedy, endings] : remedies) line += "; " + endings + ": " + remedy;
   return line;
 }

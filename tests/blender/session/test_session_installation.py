@@ -347,7 +347,8 @@ def test_names_of_people_are_hidden(monkeypatch):
 
 
 def test_the_report(tmp_path, monkeypatch):
-    monkeypatch.setenv("HOME", str(tmp_path / "erika"))
+    for variable in ("HOME", "USERPROFILE"):  # which of them counts depends on the system
+        monkeypatch.setenv(variable, str(tmp_path / "erika"))
     vendor = tmp_path / "erika" / "addons" / "ours" / "vendor"
     package(vendor, LINUX.format(399))
     elsewhere = package(tmp_path / "erika" / "pip")

@@ -183,7 +183,7 @@ def test_a_duplicate_id_is_one_sensor_that_speaks_twice() -> None:
 def test_a_cut_takes_the_port_away() -> None:
     emulator = Emulator(some_take(5.0), DRIVER, speed=FAST, faults=Faults(cut_after_s=1.0))
     (path,) = emulator.plug_in()
-    with serial.Serial(path, timeout=0.02) as port:
+    with serial.serial_for_url(path, timeout=0.02) as port:
         thread = threading.Thread(target=emulator.run)
         thread.start()
         until(lambda: is_gone(port))
@@ -198,7 +198,7 @@ def test_it_waits_for_a_host_and_is_paced() -> None:
     thread = threading.Thread(target=lambda: emulator.run(stop.is_set))
     thread.start()
     assert emulator.num_sent == 0
-    with serial.Serial(path, timeout=0.02) as port:
+    with serial.serial_for_url(path, timeout=0.02) as port:
         until(lambda: emulator.begin_ns > 0)
         until(lambda: port.read(100_000) == b"" and emulator.num_sent > 90)
     stop.set()

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,7 @@ CASES = {
 }
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="needs pseudo-terminals")
 @pytest.mark.parametrize("name", CASES)
 def test_readings_are_true_again_and_the_gap_stays(name: str, tmp_path: Path) -> None:
     driver, seconds, faults, plays = CASES[name]
