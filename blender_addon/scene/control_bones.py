@@ -14,6 +14,7 @@ from mathutils import Vector
 
 _MECHANISM = re.compile(r"^(MCH|ORG|DEF|VIS|WGT)[-_]")
 _FACE = "face"  # of Rigify's metarigs: hundreds of bones that no motion turns
+_ARP_SWITCH = "ik_fk_switch"  # of Auto-Rig Pro's IK controls: 0 is IK, 1 is FK
 _RIGIFY_MOVER = "torso"
 _RIGIFY_ORIGINAL = "ORG-"
 _RIGIFY_SPINE = f"{_RIGIFY_ORIGINAL}spine"
@@ -75,8 +76,13 @@ def picked_bones(armature: Object, *, with_mechanism: bool = False) -> PickedBon
         and (with_mechanism or not _MECHANISM.match(bone.name))
     ]
     names = {bone.name for bone in kept}
-    limbs = tuple(_constrained_limbs(armature, names))
-    return PickedBones([_picked(bone, names) for bone in kept], limbs=limbs)
+    picked = [_picked(bone, names) for bone in kept]
+    limbs = tuple(_arp_limbs(armature))
+    if limbs:
+        fk = {_property_path(limb.target, _ARP_SWITCH): 1.0 for limb in limbs}
+        ik_properties = {limb.end: _arp_ik_properties(armature, limb) for limb in limbs}
+        return PickedBones(picked, "", fk, ik_properties, limbs)
+    return PickedBones(picked, limbs=tuple(_constrained_limbs(armature, names)))
 
 
 def _picked(bone: Bone, names: set[str]) -> Picked:
@@ -163,6 +169,41 @@ def _rigify_ik_properties(armature: Object, limb: IkLimb) -> dict[str, float]:
     wanted = {"IK_FK": 0.0, "IK_Stretch": 0.0, "pole_vector": 1, "IK_parent": 1, "pole_parent": 1}
     bone = armature.pose.bones[holder]
     return {_property_path(holder, name): value for name, value in wanted.items() if name in bone}
+
+
+def _arp_limbs(armature: Object) -> Iterator[IkLimb]:
+    """The limbs of a rig with the names of Auto-Rig Pro's controls that have an FK-IK switch."""
+    for upper, lower, end, pole in (
+        ("arm", "forearm", "hand", "arms_pole"),
+        ("thigh", "leg", "foot", "leg_pole"),
+    ):
+        for side in (".l", ".r"):
+            limb = IkLimb(
+                f"c_{end}_fk{side}",
+                f"c_{end}_ik{side}",
+                f"c_{pole}{side}",
+                (f"{upper}{side}", f"{lower}{side}", f"{end}{side}"),
+                is_switched=True,
+            )
+            bones = armature.pose.bones
+            needed = (limb.end, limb.target, limb.pole, *limb.shown)
+            if all(name in bones for name in needed) and _ARP_SWITCH in bones[limb.target]:
+                yield limb
+
+
+def _arp_ik_properties(armature: Object, limb: IkLimb) -> dict[str, float]:
+    """IK without stretch, its pole in the space of the whole character."""
+    wanted = {
+        (limb.target, _ARP_SWITCH): 0.0,
+        (limb.target, "auto_stretch"): 0.0,
+        (limb.pole, "pole_parent"): 0.0,
+    }
+    bones = armature.pose.bones
+    return {
+        _property_path(bone, name): value
+        for (bone, name), value in wanted.items()
+        if name in bones[bone]
+    }
 
 
 def _constrained_limbs(armature: Object, names: set[str]) -> Iterator[IkLimb]:

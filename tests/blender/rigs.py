@@ -251,6 +251,89 @@ def rigify_rig(*, generated: bool = True):
     return armature
 
 
+_ARP_LIMBS = {
+    "hand": ("arm", "forearm", "arms_pole", 1.0),
+    "foot": ("thigh", "leg", "leg_pole", -1.0),
+}
+_ARP_PARTS = {"arm": "upper_arm", "forearm": "forearm", "hand": "hand"}
+_ARP_PARTS |= {"thigh": "thigh", "leg": "shank", "foot": "foot"}
+
+
+def auto_rig_pro_rig():
+    """FK and IK controls with the names of Auto-Rig Pro, and the bones that follow either.
+
+    A skeleton made here: thigh.l, leg.l and foot.l copy the FK controls, or the IK chain, as
+    c_foot_ik.l["ik_fk_switch"] says; arms alike.
+    """
+    armature = named_rig("auto_rig_pro", rolls=True)
+    named = STYLES["auto_rig_pro"]
+    bpy.ops.object.mode_set(mode="EDIT")
+    edit = armature.data.edit_bones
+    for end, (upper, lower, pole, behind) in _ARP_LIMBS.items():
+        for side in "LR":
+            low = side.lower()
+            fk = {part: edit[named.name(_ARP_PARTS[part], side)] for part in (upper, lower, end)}
+            fk[lower].head.y += 0.01 * behind  # a limb that is bent a little
+            fk[upper].tail = fk[lower].head
+            for ending in ("", "_ik"):
+                above = fk[upper].parent
+                for part in (upper, lower) if ending else (upper, lower, end):
+                    bone = edit.new(f"{part}{ending}.{low}")
+                    bone.head, bone.tail = fk[part].head, fk[part].tail
+                    bone.parent, above = above, bone
+            target = edit.new(f"c_{end}_ik.{low}")
+            target.head, target.tail = fk[end].head, fk[end].head + Vector((0, 0.15, 0))
+            control = edit.new(f"c_{pole}.{low}")
+            control.head = fk[lower].head + Vector((0, 0.5 * behind, 0))
+            control.tail = control.head + Vector((0, 0.1, 0))
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for end, (upper, lower, pole, _) in _ARP_LIMBS.items():
+        for low in "lr":
+            _add_arp_constraints(armature, (upper, lower, end), pole, low)
+    bpy.context.view_layer.update()
+    return armature
+
+
+def _pole_angle(armature, upper: str, lower: str, pole: str, low: str) -> float:
+    """With which the limb is as at rest while all controls are."""
+    bones = armature.data.bones
+    head, tail = bones[upper].head_local, bones[lower].tail_local
+    normal = (tail - head).cross(bones[f"c_{pole}.{low}"].head_local - head)
+    along = bones[upper].tail_local - head
+    wanted = normal.cross(along)
+    x_axis = bones[upper].matrix_local.col[0].to_3d()
+    angle = x_axis.angle(wanted)
+    return -angle if x_axis.cross(wanted).dot(along) > 0.0 else angle
+
+
+def _add_arp_constraints(armature, parts: tuple[str, str, str], pole: str, low: str) -> None:
+    bones = armature.pose.bones
+    end = parts[2]
+    target = f"c_{end}_ik.{low}"
+    bones[target]["ik_fk_switch"] = 0.0
+    bend = bones[f"{parts[1]}_ik.{low}"].constraints.new("IK")
+    bend.target = bend.pole_target = armature
+    bend.subtarget, bend.pole_subtarget, bend.chain_count = target, f"c_{pole}.{low}", 2
+    bend.pole_angle = _pole_angle(
+        armature, f"{parts[0]}_ik.{low}", f"{parts[1]}_ik.{low}", pole, low
+    )
+    for part in parts:
+        fk = bones[f"{part}.{low}"].constraints.new("COPY_ROTATION")
+        fk.target, fk.subtarget = armature, f"c_{part}_fk.{low}"
+        ik = bones[f"{part}.{low}"].constraints.new("COPY_ROTATION")
+        ik.target = armature
+        ik.subtarget = target if part == end else f"{part}_ik.{low}"
+        if part == end:
+            ik.owner_space = ik.target_space = "LOCAL_WITH_PARENT"
+        driver = ik.driver_add("influence").driver
+        driver.type = "SCRIPTED"
+        variable = driver.variables.new()
+        variable.name, variable.type = "fk", "SINGLE_PROP"
+        variable.targets[0].id = armature
+        variable.targets[0].data_path = f'pose.bones["{target}"]["ik_fk_switch"]'
+        driver.expression = "1.0 - fk"
+
+
 def limb_directions(armature, frames, limbs: dict[str, tuple[str, str]]) -> dict[str, np.ndarray]:
     """(T, 3) where limbs point in the world: from one bone's head to another's, as evaluated."""
     found: dict[str, list] = {joint: [] for joint in limbs}

@@ -59,6 +59,39 @@ def test_hands_and_feet_of_rigify_meet_the_solvers_by_its_ik():
         assert cosines[clear].min() > 0.95
 
 
+def _arp_points(armature, frames) -> np.ndarray:
+    """(T, 12, 3) as _rigify_points."""
+    bones = ("thigh", "arm", "leg", "forearm", "foot", "hand")
+    return points_of(armature, frames, [f"{bone}.{side}" for bone in bones for side in "lr"])
+
+
+def test_hands_and_feet_of_auto_rig_pro_meet_the_solvers_by_its_ik():
+    armature = rigs.auto_rig_pro_rig()
+    frames = range(1, 1 + solved().num_frames)
+    found = {}
+    for limbs in ("IK", "LEGS", "FK"):
+        settings().limbs = limbs
+        action = bake(armature)
+        found[limbs] = _arp_points(armature, frames)
+        paths = {curve.data_path for curve in addon("scene.compat").curves_of(action)}
+        assert ('pose.bones["c_foot_ik.l"].location' in paths) == (limbs != "FK")
+        assert ('pose.bones["c_hand_fk.l"].rotation_quaternion' in paths) == (limbs != "IK")
+        [switch] = [
+            curve
+            for curve in addon("scene.compat").curves_of(action)
+            if curve.data_path == 'pose.bones["c_foot_ik.l"]["ik_fk_switch"]'
+        ]
+        assert switch.keyframe_points[0].co.y == (1.0 if limbs == "FK" else 0.0)
+    for limbs in ("LEGS", "IK"):
+        apart = np.linalg.norm(found[limbs] - found["FK"], axis=-1)[:, 4:]
+        print(
+            f"{limbs}: knees and elbows {1e3 * apart[:, :4].max():.1f} mm, "
+            f"ankles and wrists {1e3 * apart[:, 4:].max():.1f} mm from FK"
+        )
+        assert apart[:, 4:].max() <= _WORST_M
+        assert apart[:, :4].max() <= _WORST_M
+
+
 def test_a_rig_with_ik_constraints_alone_is_moved_by_their_targets():
     armature = rigs.named_rig("mixamo", rolls=True)
     named = rigs.STYLES["mixamo"]
