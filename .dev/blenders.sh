@@ -42,6 +42,7 @@ test_blender() {
   home=$(mktemp -d)
   trap 'rm -rf "$home"' EXIT
   cd "$ROOT"
+  export SPARSE_MOCAP_TEST_PATH="$UNPACKED_WHEEL"
   [ -n "$runner" ] || export SPARSE_MOCAP_TEST_PYTHON="$VENV/bin/python" # for this Debian alone
   $runner timeout 1200 env HOME="$HOME" DISPLAY="${DISPLAY:-}" XAUTHORITY="${XAUTHORITY:-}" \
     BLENDER_USER_RESOURCES="$home" BLENDER_USER_CONFIG="$home" BLENDER_USER_SCRIPTS="$home" \

@@ -42,9 +42,8 @@ make_old_root() {
 # the sources and not the module: a method that is built for its test, the release files' own checks,
 # and the README, whose commands run without PYTHONPATH.
 test_python_in_root() {
-  unpack_wheel cp311
   tests=$ROOT/tests/python
-  in_root env PYTHONPATH="$PACKAGE_BUILD/installed:$VENV/lib/python3.11/site-packages" \
+  in_root env PYTHONPATH="$UNPACKED_WHEEL:$VENV/lib/python3.11/site-packages" \
     PYTHONDONTWRITEBYTECODE=1 PATH=/usr/local/bin:/usr/bin:/bin \
     python3.11 -m pytest -q -p no:cacheprovider -c "$ROOT/bindings/pyproject.toml" --rootdir "$ROOT" \
     --numprocesses "$PROCESSORS" --dist loadfile --max-worker-restart 0 "$tests" \

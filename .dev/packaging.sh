@@ -7,6 +7,7 @@
 ZIG_REQUIREMENTS='ziglang==0.17.1'
 ZIG=$(environment zig "$ZIG_REQUIREMENTS")
 PACKAGE_BUILD=$ROOT/build/package
+UNPACKED_WHEEL=$PACKAGE_BUILD/installed
 
 # The targets, named as Blender names platforms; each has its file in .dev/packaging/toolchains.
 TARGETS='linux-x64 windows-x64 macos-arm64'
@@ -57,19 +58,17 @@ note_tested_modules() {
 }
 
 test_python_on_wheel() {
-  unpack_wheel cp311
-  export PYTHONPATH="$PACKAGE_BUILD/installed"
+  export PYTHONPATH="$UNPACKED_WHEEL"
   test_python
 }
 
-# unpack_wheel TAG: what pip would install from the wheel for that CPython, and the demo, in
-# build/package/installed.
+# unpack_wheel TAG: what pip would install from the wheel for that CPython, and the demo.
 unpack_wheel() {
-  rm -rf "$PACKAGE_BUILD/installed"
-  mkdir -p "$PACKAGE_BUILD/installed"
+  rm -rf "$UNPACKED_WHEEL"
+  mkdir -p "$UNPACKED_WHEEL"
   "$VENV/bin/python" -m zipfile -e "$ROOT"/build/packages/*-"$1-$1"-manylinux*.whl \
-    "$PACKAGE_BUILD/installed"
-  ln -s "$ROOT/bindings/sparse_mocap_demo" "$PACKAGE_BUILD/installed/"
+    "$UNPACKED_WHEEL"
+  ln -s "$ROOT/bindings/sparse_mocap_demo" "$UNPACKED_WHEEL/"
 }
 
 # make_release_files [--quick]: in build/packages, checked; with --quick for this machine alone.
@@ -91,6 +90,7 @@ build_and_pack() {
     step "Build for $target" for_target "$target" build_modules "$target"
   done
   step 'Make the release files' pack_release_files
+  step 'Unpack the wheel for the tests' unpack_wheel cp311
 }
 
 pack_release_files() {

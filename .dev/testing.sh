@@ -66,6 +66,7 @@ in_blender() {
   shift
   exec timeout 900 env -u PYTHONPATH -u PYTHONNOUSERSITE PATH="$SYSTEM_PATH" \
     SPARSE_MOCAP_PACKAGE="$package" SPARSE_MOCAP_TEST_PYTHON="$VENV/bin/python" \
+    SPARSE_MOCAP_TEST_PATH="$UNPACKED_WHEEL" \
     "$@" "$ROOT/tests/blender/run.py"
 }
 

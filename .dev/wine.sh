@@ -70,8 +70,7 @@ test_windows_bpy() {
 
 # test_windows_beside_linux: on this side too with what was packed.
 test_windows_beside_linux() {
-  unpack_wheel cp311
-  PYTHONPATH="$PACKAGE_BUILD/installed" python -m pytest -q -rA -p no:cacheprovider \
+  PYTHONPATH="$UNPACKED_WHEEL" python -m pytest -q -rA -p no:cacheprovider \
     -c "$ROOT/bindings/pyproject.toml" --rootdir "$ROOT" "$ROOT/tests/windows"
 }
 

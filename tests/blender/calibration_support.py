@@ -18,7 +18,7 @@ LEAD_S = 3.0
 """From the first sample to the first phase: no movement begins before its own phase is near."""
 
 _ROOT = Path(__file__).resolve().parents[2]
-_BINDINGS = str(_ROOT / "bindings")
+_SOURCES = "" if os.environ.get("SPARSE_MOCAP_PACKAGE") else str(_ROOT / "bindings")
 _MAKER = _ROOT / "tests" / "python" / "guided_body.py"
 
 
@@ -36,7 +36,7 @@ def planted(folder: Path) -> tuple[Path, np.ndarray]:
     python = os.environ.get("SPARSE_MOCAP_TEST_PYTHON") or shutil.which("python") or "python3"
     done = subprocess.run(
         [python, _MAKER, take, turns, *times],
-        env=os.environ | {"PYTHONPATH": os.environ.get("SPARSE_MOCAP_TEST_PATH") or _BINDINGS},
+        env=os.environ | {"PYTHONPATH": os.environ.get("SPARSE_MOCAP_TEST_PATH") or _SOURCES},
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     if "No module named 'scipy'" in done.stderr:
