@@ -65,6 +65,28 @@ std::array<std::array<double, 3>, 2> tait_bryan_angles(const Mat3& R,
   return {{{a, b, c}, {a + kPi, kPi - b, c + kPi}}};
 }
 
+// Joint by joint; offset_parent(j) and R_joint(j) are those of joint j.
+template <typename Offset, typename Rotation>
+void place_joints(const Skeleton& skeleton, const Vec3& position_root, const Offset& offset_parent,
+                  const Rotation& R_joint, JointTransforms& out) {
+  const auto n = static_cast<std::size_t>(skeleton.num_joints());
+  out.R_world_joint.resize(n);
+  out.pivot.resize(n);
+  out.end.resize(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    const Joint& joint = skeleton.joints()[j];
+    if (joint.parent < 0) {
+      out.pivot[j] = position_root;
+      out.R_world_joint[j] = R_joint(j);
+    } else {
+      const auto p = static_cast<std::size_t>(joint.parent);
+      out.pivot[j] = out.end[p] + out.R_world_joint[p] * offset_parent(j);
+      out.R_world_joint[j].noalias() = out.R_world_joint[p] * R_joint(j);
+    }
+    out.end[j] = out.pivot[j] + out.R_world_joint[j] * joint.bone;
+  }
+}
+
 bool are_different(const std::vector<Axis>& axes) {
   return axes[0] != axes[1] && axes[1] != axes[2] && axes[0] != axes[2];
 }
@@ -99,10 +121,17 @@ int Skeleton::find(std::string_view name) const {
 
 Mat3 joint_rotation(const Joint& joint, const double* angles) {
   if (joint.axes.empty()) return Mat3::Identity();
-  Mat3 R = Mat3::Identity();
-  for (std::size_t i = 0; i < joint.axes.size(); ++i)
-    R = R * elementary_rotation(joint.axes[i], angles[i]);
-  return joint.R_joint_axes * R * joint.R_joint_axes.transpose();
+  Mat3 R = joint.R_joint_axes;
+  // A turn about one axis mixes the two other columns.
+  for (std::size_t i = 0; i < joint.axes.size(); ++i) {
+    const double s = std::sin(angles[i]), c = std::cos(angles[i]);
+    const int axis = index_of(joint.axes[i]);
+    const int j = (axis + 1) % 3, k = (axis + 2) % 3;
+    const Vec3 column_j = R.col(j), column_k = R.col(k);
+    R.col(j) = c * column_j + s * column_k;
+    R.col(k) = c * column_k - s * column_j;
+  }
+  return R * joint.R_joint_axes.transpose();
 }
 
 void joint_angles(const Joint& joint, const Mat3& R_joint, const double* reference,
@@ -150,39 +179,30 @@ void unwind_pose(const Skeleton& skeleton, const Eigen::VectorXd& reference,
 
 void forward_kinematics(const Skeleton& skeleton, const Vec3& position_root,
                         const std::vector<Mat3>& R_joint, JointTransforms& out) {
-  std::vector<Vec3> offsets;
-  for (const auto& joint : skeleton.joints()) offsets.push_back(joint.offset_parent);
-  forward_kinematics(skeleton, offsets, position_root, R_joint, out);
+  place_joints(
+      skeleton, position_root,
+      [&](std::size_t j) -> const Vec3& { return skeleton.joints()[j].offset_parent; },
+      [&](std::size_t j) -> const Mat3& { return R_joint[j]; }, out);
 }
 
 void forward_kinematics(const Skeleton& skeleton, const std::vector<Vec3>& offset_parent,
                         const Vec3& position_root, const std::vector<Mat3>& R_joint,
                         JointTransforms& out) {
-  const auto n = static_cast<std::size_t>(skeleton.num_joints());
-  out.R_world_joint.resize(n);
-  out.pivot.resize(n);
-  out.end.resize(n);
-  for (std::size_t j = 0; j < n; ++j) {
-    const Joint& joint = skeleton.joints()[j];
-    if (joint.parent < 0) {
-      out.pivot[j] = position_root;
-      out.R_world_joint[j] = R_joint[j];
-    } else {
-      const auto p = static_cast<std::size_t>(joint.parent);
-      out.pivot[j] = out.end[p] + out.R_world_joint[p] * offset_parent[j];
-      out.R_world_joint[j] = out.R_world_joint[p] * R_joint[j];
-    }
-    out.end[j] = out.pivot[j] + out.R_world_joint[j] * joint.bone;
-  }
+  place_joints(
+      skeleton, position_root, [&](std::size_t j) -> const Vec3& { return offset_parent[j]; },
+      [&](std::size_t j) -> const Mat3& { return R_joint[j]; }, out);
 }
 
 void forward_kinematics(const Skeleton& skeleton, const Vec3& position_root,
                         const Eigen::VectorXd& angles, JointTransforms& out) {
-  std::vector<Mat3> R_joint(static_cast<std::size_t>(skeleton.num_joints()));
-  for (int j = 0; j < skeleton.num_joints(); ++j)
-    R_joint[static_cast<std::size_t>(j)] =
-        joint_rotation(skeleton.joint(j), angles.data() + skeleton.angle_begin(j));
-  forward_kinematics(skeleton, position_root, R_joint, out);
+  place_joints(
+      skeleton, position_root,
+      [&](std::size_t j) -> const Vec3& { return skeleton.joints()[j].offset_parent; },
+      [&](std::size_t j) {
+        const int begin = skeleton.angle_begin(static_cast<int>(j));
+        return joint_rotation(skeleton.joints()[j], angles.data() + begin);
+      },
+      out);
 }
 
 Eigen::VectorXd stacked_ends(const JointTransforms& transforms) {

@@ -56,6 +56,7 @@ FitEquations::FitEquations(const Skeleton& skeleton, double frame_time_s, const 
   if (with_system) system_.emplace(n - first_free, num_angles_ + static_cast<int>(kRootUnknowns));
   for (int t = std::max(0, first_free - BandedSystem::kReach); t < n; ++t) see(t);
   for (int t = first_free; t < n; ++t) add_frame(t);
+  for (int t = first_free; system_ && t < n; ++t) add_points_to_system(t);
 }
 
 void FitEquations::see(int t) {
@@ -64,6 +65,7 @@ void FitEquations::see(int t) {
   forward_kinematics(skeleton_, Vec3::Zero(), rotations, seen.pose);
   seen.points = pose_points(seen.pose, weights_.lever_m);
   if (!system_ || !is_free(t)) return;
+  seen.residual.setZero(seen.points.size());
   const auto [ends, turns] = step_jacobians(skeleton_, rotations, seen.pose);
   seen.jacobian.resize(2 * ends.rows(), ends.cols());
   seen.jacobian << ends, std::sqrt(2.0) * weights_.lever_m * turns;
@@ -103,24 +105,34 @@ double FitEquations::evenness(int t) const {
 void FitEquations::add_points(double weight, int t, std::span<const double> factors,
                               const Eigen::VectorXd* target) {
   if (weight <= 0.0) return;
-  const auto seen = [&](std::size_t k) -> const Seen& {
-    return seen_[static_cast<std::size_t>(t) - k];
-  };
+  const auto seen = [&](std::size_t k) -> Seen& { return seen_[static_cast<std::size_t>(t) - k]; };
   Eigen::VectorXd residual = factors[0] * seen(0).points;
   for (std::size_t k = 1; k < factors.size(); ++k) residual += factors[k] * seen(k).points;
   if (target != nullptr) residual -= *target;
   value_ += weight * residual.squaredNorm();
   if (!system_) return;
-  for (std::size_t k = 0; k < factors.size(); ++k) {
-    const int row = t - static_cast<int>(k) - first_free_;
-    if (row < 0) break;
-    system_->right(row).head(num_angles_) -= weight * factors[k] * pulled(seen(k), residual);
-    for (std::size_t l = k; l < factors.size(); ++l) {
-      const int column = t - static_cast<int>(l) - first_free_;
-      if (column < 0) break;
-      system_->block(row, column).topLeftCorner(num_angles_, num_angles_).noalias() +=
-          weight * factors[k] * factors[l] * seen(k).jacobian.transpose() * seen(l).jacobian;
-    }
+  for (std::size_t k = 0; k < factors.size() && is_free(t - static_cast<int>(k)); ++k) {
+    seen(k).residual += weight * factors[k] * residual;
+    for (std::size_t l = k; l < factors.size() && is_free(t - static_cast<int>(l)); ++l)
+      seen(k).products[l - k] += weight * factors[k] * factors[l];
+  }
+}
+
+// All terms of points at once: products of jacobians are what a fit costs most.
+void FitEquations::add_points_to_system(int t) {
+  const Seen& seen = seen_[static_cast<std::size_t>(t)];
+  const int row = t - first_free_;
+  system_->right(row).head(num_angles_) -= pulled(seen, seen.residual);
+  const auto corner = [&](int column) {
+    return system_->block(row, column).topLeftCorner(num_angles_, num_angles_);
+  };
+  corner(row).selfadjointView<Eigen::Lower>().rankUpdate(seen.jacobian.transpose(),
+                                                         seen.products[0]);
+  for (int back = 1; back <= std::min(BandedSystem::kReach, row); ++back) {
+    const double factor = seen.products[static_cast<std::size_t>(back)];
+    if (factor == 0.0) continue;
+    corner(row - back).noalias() +=
+        factor * seen.jacobian.transpose() * seen_[static_cast<std::size_t>(t - back)].jacobian;
   }
 }
 

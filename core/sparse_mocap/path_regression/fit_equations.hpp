@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -29,6 +30,10 @@ class FitEquations {
     JointTransforms pose;  // heading frame, root at the origin
     Eigen::VectorXd points;
     Eigen::MatrixXd jacobian;
+    // What the terms of points add up to: the factor of jacobian^T times the jacobian of so many
+    // frames before, and the residuals that jacobian^T is to be multiplied with.
+    std::array<double, BandedSystem::kReach + 1> products{};
+    Eigen::VectorXd residual;
   };
   struct Share {  // of a frame in a small residual
     int frame;
@@ -46,6 +51,7 @@ class FitEquations {
   void add_turning(int t);
   void add_points(double weight, int t, std::span<const double> factors,
                   const Eigen::VectorXd* target);
+  void add_points_to_system(int t);
   void add_small(double weight, const Eigen::VectorXd& residual, std::vector<Share> shares);
   Eigen::VectorXd pulled(const Seen& seen, const Eigen::VectorXd& residual) const;
   Vec3 foot(int t, int ankle) const;

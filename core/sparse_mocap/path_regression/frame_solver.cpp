@@ -78,10 +78,9 @@ RetrievedFrame FrameSolver::retrieve(const std::vector<Path>& paths, const Signa
   RetrievedFrame frame;
   const Eigen::VectorXd weights =
       config_.regression_ridge > 0.0 ? regressed(weighted, window) : weighted.weights;
-  frame.target.points = mean_points(weighted.paths, weights, 0);
-  if (config_.fit.step > 0.0) {
-    frame.target.step = frame.target.points - mean_points(weighted.paths, weights, 1);
-  }
+  MeanPoints mean = mean_points(weighted.paths, weights);
+  if (mean.before.size() > 0) frame.target.step = mean.now - mean.before;
+  frame.target.points = std::move(mean.now);
   frame.target.inclination = inclination_target(database_->skeleton(), reading, signals_);
   frame.target.turning = turning_targets(reading, signals_);
   frame.target.root = root_rates(*database_, weighted);
@@ -133,18 +132,41 @@ StandingFeet FrameSolver::feet(const WeightedPaths& weighted, const SignalWindow
   return feet;
 }
 
-// The weighted mean of the points so many frames before the paths' ends, inside their clips.
-Eigen::VectorXd FrameSolver::mean_points(const std::vector<Path>& paths,
-                                         const Eigen::VectorXd& weights, int frames_back) const {
-  const Skeleton& skeleton = database_->skeleton();
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(12 * skeleton.num_joints());
-  JointTransforms pose;
+// Paths follow one another through the same clips, so most frames stand at an end and before
+// another.
+FrameSolver::MeanPoints FrameSolver::mean_points(const std::vector<Path>& paths,
+                                                 const Eigen::VectorXd& weights) const {
+  struct Used {
+    int frame;
+    double now, before;  // weights
+  };
+  std::vector<Used> all;
+  const bool with_step = config_.fit.step > 0.0;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    const Clip& clip = clip_at(*database_, paths[i].frame);
-    const int frame = std::max(paths[i].frame - frames_back, clip.begin);
-    forward_kinematics(skeleton, Vec3::Zero(),
-                       database_->angles().row(frame).transpose().cast<double>(), pose);
-    mean += weights[static_cast<Eigen::Index>(i)] * pose_points(pose, config_.fit.lever_m);
+    const int frame = paths[i].frame;
+    const double weight = weights[static_cast<Eigen::Index>(i)];
+    all.push_back({frame, weight, 0.0});
+    if (with_step)
+      all.push_back({std::max(frame - 1, clip_at(*database_, frame).begin), 0.0, weight});
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Used& a, const Used& b) { return a.frame < b.frame; });
+  const Skeleton& skeleton = database_->skeleton();
+  MeanPoints mean{Eigen::VectorXd::Zero(12 * skeleton.num_joints()), {}};
+  if (with_step) mean.before.setZero(mean.now.size());
+  JointTransforms pose;
+  Eigen::VectorXd angles;
+  for (auto used = all.begin(); used != all.end();) {
+    Used sum{used->frame, 0.0, 0.0};
+    for (; used != all.end() && used->frame == sum.frame; ++used) {
+      sum.now += used->now;
+      sum.before += used->before;
+    }
+    angles = database_->angles().row(sum.frame).transpose().cast<double>();
+    forward_kinematics(skeleton, Vec3::Zero(), angles, pose);
+    const Eigen::VectorXd points = pose_points(pose, config_.fit.lever_m);
+    mean.now += sum.now * points;
+    if (with_step) mean.before += sum.before * points;
   }
   return mean;
 }

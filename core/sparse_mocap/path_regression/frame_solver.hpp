@@ -45,8 +45,12 @@ class FrameSolver {
                             const retrieval::SignalWindow& window) const;
   retrieval::StandingFeet feet(const retrieval::WeightedPaths& weighted,
                                const retrieval::SignalWindow& window) const;
-  Eigen::VectorXd mean_points(const std::vector<retrieval::Path>& paths,
-                              const Eigen::VectorXd& weights, int frames_back) const;
+  // The weighted means of the points at the paths' ends and one frame before, inside their clips.
+  struct MeanPoints {
+    Eigen::VectorXd now, before;  // before: empty where the fit does not ask for it
+  };
+  MeanPoints mean_points(const std::vector<retrieval::Path>& paths,
+                         const Eigen::VectorXd& weights) const;
 
   std::shared_ptr<const MotionDatabase> database_;
   std::vector<retrieval::Signal> signals_;

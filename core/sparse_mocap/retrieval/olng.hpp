@@ -54,31 +54,37 @@ class OnlineLazyNeighbourhoodGraph {
  private:
   struct Node {
     std::int32_t frame = 0;
+    float own = 0.0F;     // what matching it earns
+    float before = 0.0F;  // the reward of the best path that it extends
     float reward = 0.0F;  // of the best path into it, forgetting applied
     float total = 0.0F;   // the same without forgetting or window, to cut windows exactly
     std::int32_t length = 0;
     std::int32_t previous = -1;  // node index in the column columns_back before
     std::int32_t columns_back = 0;
   };
-  using Column = std::vector<Node>;
+  struct Column {
+    std::vector<Node> nodes;  // in the order of the neighbours
+    std::vector<std::uint64_t>
+        by_frame;  // a node's frame and, in the lower half, its index; sorted
+  };
+  struct Step {
+    int query;  // columns
+    int database;
+  };
 
-  const Node* node_at(int columns_back, std::int32_t frame) const;
-  void connect(Node& node) const;
+  Column reused_column();
+  void connect(Column& column, const Step& step) const;
   void cut_to_window(Node& node) const;
+  const Column& column_before(int columns_back) const {
+    return columns_[columns_.size() - static_cast<std::size_t>(columns_back)];
+  }
 
   std::vector<std::int32_t> clip_of_frame_;
   OlngConfig config_;
-  float kept_after_[3];         // forgetting after 0, 1 and 2 columns
+  std::vector<Step> steps_;
   std::deque<Column> columns_;  // newest last
-  // For the two newest columns: which node a database frame has. An entry counts only if its stamp
-  // is the column's, so nothing has to be cleared.
-  struct Slot {
-    std::int64_t stamp = -1;
-    std::int32_t node = -1;
-  };
-  std::vector<Slot> slots_[3];
-  std::int64_t now_ = 0;
   std::vector<Path> paths_;
+  std::vector<std::uint64_t> scratch_;
 };
 
 }  // namespace sparse_mocap::retrieval
