@@ -44,4 +44,20 @@ bool OrderedWork::wait_for(std::size_t i, std::chrono::milliseconds patience) {
   return true;
 }
 
+void in_pieces(std::size_t count, std::size_t piece, int num_threads,
+               const std::function<void(std::size_t)>& work) {
+  constexpr std::chrono::milliseconds kPatience{200};
+  const std::size_t num_pieces = (count + piece - 1) / piece;
+  if (num_pieces <= 1 || num_threads_or_all(num_threads) == 1) {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+    return;
+  }
+  OrderedWork pieces(num_pieces, num_threads, [&](std::size_t p, const std::stop_token&) {
+    for (std::size_t i = p * piece; i < std::min(count, (p + 1) * piece); ++i) work(i);
+  });
+  for (std::size_t p = 0; p < num_pieces; ++p)
+    while (!pieces.wait_for(p, kPatience)) {
+    }
+}
+
 }  // namespace sparse_mocap

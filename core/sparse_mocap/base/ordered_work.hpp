@@ -68,4 +68,9 @@ void work_in_order(std::size_t count, int num_threads, const Work& work, const C
   }
 }
 
+// Calls work(i) for each i in [0, count), so many at a time as a piece of a thread's work, and
+// returns when all are done. An exception of work stops the threads and is thrown.
+void in_pieces(std::size_t count, std::size_t piece, int num_threads,
+               const std::function<void(std::size_t)>& work);
+
 }  // namespace sparse_mocap

@@ -1,215 +1,244 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/retrieval/block_scan.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <utility>
 
-#include "sparse_mocap/retrieval/block_kernels.hpp"
+#include "sparse_mocap/base/ordered_work.hpp"
+#include "sparse_mocap/retrieval/block_order.hpp"
 
 namespace sparse_mocap::retrieval {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t kSampledEach = 16;      // every so many rows are in the sample
+constexpr std::size_t kSampledEach = 32;      // every so many rows are in the sample
 constexpr std::size_t kFirst = 8, kStep = 4;  // dimensions looked at before a block is given up
-// Floats round a squared distance by less than this part of it.
-constexpr float kRelative = 1e-5F;
-// And a turned row by less than this part of its length.
-constexpr double kOfLength = 3e-7;
+constexpr float kMostCode = 255.0F;
+// Floats round a distance by less than this part of it, and by less than that of the numbers that
+// it is a difference of.
+constexpr float kRelative = 1e-5F, kOfLength = 1e-6F;
 
-// Where the values of the padding of the last block lie: too far to be near anything.
-constexpr float kFar = 1e15F;
-
-// The index, in the node's list, that a kd-split puts between its halves: full blocks on the left.
-std::size_t split_of(std::size_t count, std::size_t block) {
-  const std::size_t num_blocks = (count + block - 1) / block;
-  return num_blocks / 2 * block;
-}
-
-// The dimension in which a part of the rows, some of them looked at, varies most.
-Eigen::Index widest(const BlockScan::Rows& rows, const std::uint32_t* begin, std::size_t count) {
-  constexpr std::size_t kMostLookedAt = 128;
-  const std::size_t step = std::max<std::size_t>(1, count / kMostLookedAt);
-  Eigen::ArrayXf sum = Eigen::ArrayXf::Zero(rows.cols()), squares = sum;
-  float looked_at = 0.0F;
-  for (std::size_t i = 0; i < count; i += step) {
-    const auto row = rows.row(begin[i]).array().transpose();
-    sum += row;
-    squares += row.square();
-    looked_at += 1.0F;
-  }
-  Eigen::Index dimension = 0;
-  (squares - sum.square() / looked_at).maxCoeff(&dimension);
-  return dimension;
-}
+float squared(float x) { return x * x; }
 
 }  // namespace
 
-// A query on the principal axes.
-struct BlockScan::Query {
-  std::vector<float> turned;
-  float rounding = 0.0F;  // of a distance (not squared), by turning rows and query
+// What an index is made of.
+struct BlockScan::Source {
+  const Rows& features;
+  std::span<const std::uint32_t> listed;
+  int num_threads;
 
-  // What a squared distance may be for one that is `squared` in exact arithmetic.
-  float at_most(float squared) const {
-    const float distance = std::sqrt(squared) + rounding;
-    return distance * distance * (1.0F + kRelative);
+  float value(std::size_t place, std::size_t dimension) const {
+    return features(listed[place], static_cast<Eigen::Index>(dimension));
   }
 };
 
-BlockScan::BlockScan(const Rows& features, std::span<const std::uint32_t> listed)
+// What is asked for, in the dimensions that are known.
+struct BlockScan::Query {
+  std::vector<AskedValue> values;  // the most varied dimension first
+  float rounding = 0.0F;           // of a distance
+
+  // How far away rows may look that are no farther than a radius.
+  float reach(float radius) const { return radius * (1.0F + kRelative) + rounding; }
+};
+
+// Rows that may be within a radius, and how far each is at most.
+struct BlockScan::Candidates {
+  std::vector<std::uint32_t>& places;
+  std::vector<float>& at_most;
+
+  // A distance within which k rows certainly are; these are at least k.
+  float surely_within(std::size_t k) const {
+    const auto kth = at_most.begin() + static_cast<std::ptrdiff_t>(k) - 1;
+    std::nth_element(at_most.begin(), kth, at_most.end());
+    return *kth;
+  }
+};
+
+BlockScan::BlockScan(const Rows& features, std::span<const std::uint32_t> listed, int num_threads)
     : num_rows_(listed.size()),
       num_dimensions_(static_cast<std::size_t>(features.cols())),
-      num_blocks_((num_rows_ + kBlock - 1) / kBlock) {
-  const auto dimensions = features.cols();
-  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(dimensions, dimensions);
-  mean_ = Eigen::VectorXd::Zero(dimensions);
-  for (const auto row : listed) mean_ += features.row(row).cast<double>().transpose();
-  mean_ /= static_cast<double>(num_rows_);
-  for (std::size_t i = 0; i < num_rows_; i += kSampledEach) {
-    const Eigen::VectorXd off = features.row(listed[i]).cast<double>().transpose() - mean_;
-    squares.selfadjointView<Eigen::Lower>().rankUpdate(off);
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(squares);
-  R_feature_axes_ = axes.eigenvectors().rowwise().reverse();
-  Rows turned(static_cast<Eigen::Index>(num_rows_), dimensions);
-  for (std::size_t i = 0; i < num_rows_; ++i) {
-    const Eigen::VectorXd row =
-        R_feature_axes_.transpose() * (features.row(listed[i]).cast<double>().transpose() - mean_);
-    turned.row(static_cast<Eigen::Index>(i)) = row.cast<float>().transpose();
-    largest_norm_ = std::max(largest_norm_, row.norm());
-  }
-  fill_blocks(turned, block_order(turned));
-  fill_sample(turned);
+      num_blocks_((num_rows_ + kBlockRows - 1) / kBlockRows),
+      num_groups_((num_blocks_ + kGroupBlocks - 1) / kGroupBlocks),
+      places_(block_order(features, listed, kBlockRows, num_threads)) {
+  const Source rows{features, listed, num_threads};
+  order_dimensions(rows);
+  fill_blocks(rows);
+  fill_groups();
+  fill_sample(rows);
 }
 
-// Places in the list, sorted by a kd-split into blocks.
-std::vector<std::uint32_t> BlockScan::block_order(const Rows& turned) const {
-  std::vector<std::uint32_t> order(num_rows_);
-  std::iota(order.begin(), order.end(), 0U);
-  std::vector<std::pair<float, std::uint32_t>> keyed;
-  std::vector<std::pair<std::size_t, std::size_t>> parts{{0, num_rows_}};
-  while (!parts.empty()) {
-    const auto [begin, end] = parts.back();
-    parts.pop_back();
-    const std::size_t count = end - begin;
-    if (count <= kBlock) continue;
-    const Eigen::Index dimension = widest(turned, order.data() + begin, count);
-    keyed.clear();
-    for (std::size_t i = begin; i < end; ++i)
-      keyed.emplace_back(turned(order[i], dimension), order[i]);
-    const std::size_t middle = split_of(count, kBlock);
-    std::nth_element(keyed.begin(), keyed.begin() + static_cast<std::ptrdiff_t>(middle),
-                     keyed.end());
-    for (std::size_t i = 0; i < count; ++i) order[begin + i] = keyed[i].second;
-    parts.emplace_back(begin, begin + middle);
-    parts.emplace_back(begin + middle, end);
-  }
-  return order;
-}
-
-void BlockScan::fill_blocks(const Rows& turned, const std::vector<std::uint32_t>& order) {
-  blocks_.assign(num_blocks_ * num_dimensions_ * kBlock, kFar);
-  low_.assign(num_dimensions_ * num_blocks_, kInfinity);
-  high_.assign(num_dimensions_ * num_blocks_, -kInfinity);
-  places_ = order;
-  for (std::size_t i = 0; i < num_rows_; ++i) {
-    const std::size_t block = i / kBlock;
-    for (std::size_t d = 0; d < num_dimensions_; ++d) {
-      const float value = turned(order[i], static_cast<Eigen::Index>(d));
-      blocks_[(block * num_dimensions_ + d) * kBlock + i % kBlock] = value;
-      float& low = low_[d * num_blocks_ + block];
-      float& high = high_[d * num_blocks_ + block];
-      low = std::min(low, value);
-      high = std::max(high, value);
+void BlockScan::order_dimensions(const Source& rows) {
+  std::vector<double> variance(num_dimensions_);
+  for (std::size_t d = 0; d < num_dimensions_; ++d) {
+    double sum = 0.0, squares = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < num_rows_; i += kSampledEach) {
+      const double value = double{rows.value(i, d)};
+      sum += value;
+      squares += value * value;
+      count += 1.0;
     }
+    variance[d] = squares / count - sum * sum / (count * count);
   }
+  dimensions_.resize(num_dimensions_);
+  std::iota(dimensions_.begin(), dimensions_.end(), std::size_t{0});
+  std::stable_sort(dimensions_.begin(), dimensions_.end(),
+                   [&](std::size_t a, std::size_t b) { return variance[a] > variance[b]; });
 }
 
-void BlockScan::fill_sample(const Rows& turned) {
+void BlockScan::fill_blocks(const Source& rows) {
+  codes_.assign(num_blocks_ * num_dimensions_ * kBlockRows, 0);
+  error_.assign(num_blocks_, 0.0F);
+  low_.assign(num_groups_ * num_dimensions_ * kGroupBlocks, kInfinity);
+  high_.assign(low_.size(), -kInfinity);
+  in_pieces(num_blocks_, 256, rows.num_threads, [&](std::size_t b) { fill_block(rows, b); });
+}
+
+void BlockScan::fill_block(const Source& rows, std::size_t block) {
+  const std::size_t begin = block * kBlockRows, end = std::min(begin + kBlockRows, num_rows_);
+  float squared_steps = 0.0F;
+  for (std::size_t d = 0; d < num_dimensions_; ++d) {
+    std::array<float, kBlockRows> values{};
+    for (std::size_t i = begin; i < end; ++i) values[i - begin] = rows.value(places_[i], d);
+    const auto [low, high] = std::minmax_element(values.begin(), values.begin() + (end - begin));
+    const std::size_t at =
+        (block / kGroupBlocks * num_dimensions_ + d) * kGroupBlocks + block % kGroupBlocks;
+    low_[at] = *low;
+    high_[at] = *high;
+    const float step = (*high - *low) / kMostCode;
+    squared_steps += squared(step);
+    if (!(step > 0.0F)) continue;
+    std::uint8_t* codes = &codes_[(block * num_dimensions_ + d) * kBlockRows];
+    for (std::size_t i = 0; i < end - begin; ++i)
+      codes[i] = static_cast<std::uint8_t>(
+          std::clamp(std::round((values[i] - *low) / step), 0.0F, kMostCode));
+  }
+  error_[block] = 0.5F * std::sqrt(squared_steps) * (1.0F + kRelative);
+}
+
+// Boxes of the groups, and how long rows are at most.
+void BlockScan::fill_groups() {
+  group_low_.assign(num_dimensions_ * num_groups_, kInfinity);
+  group_high_.assign(group_low_.size(), -kInfinity);
+  float squared_norm = 0.0F;
+  for (std::size_t d = 0; d < num_dimensions_; ++d) {
+    float longest = 0.0F;
+    for (std::size_t g = 0; g < num_groups_; ++g) {
+      const std::size_t at = (g * num_dimensions_ + d) * kGroupBlocks;
+      float& low = group_low_[d * num_groups_ + g];
+      float& high = group_high_[d * num_groups_ + g];
+      low = *std::min_element(&low_[at], &low_[at] + kGroupBlocks);
+      high = *std::max_element(&high_[at], &high_[at] + kGroupBlocks);
+      longest = std::max({longest, std::abs(low), std::abs(high)});
+    }
+    squared_norm += squared(longest);
+  }
+  largest_norm_ = std::sqrt(squared_norm);
+}
+
+void BlockScan::fill_sample(const Source& rows) {
   num_sampled_ = (num_rows_ + kSampledEach - 1) / kSampledEach;
   sample_.resize(num_dimensions_ * num_sampled_);
   for (std::size_t i = 0; i < num_sampled_; ++i)
     for (std::size_t d = 0; d < num_dimensions_; ++d)
-      sample_[d * num_sampled_ + i] =
-          turned(static_cast<Eigen::Index>(i * kSampledEach), static_cast<Eigen::Index>(d));
+      sample_[d * num_sampled_ + i] = rows.value(i * kSampledEach, d);
 }
 
-// A squared distance within which the k nearest rows most likely are: that of a row of the sample
-// which has a few more nearer to the query than k rows' share.
-float BlockScan::sampled_bound(const Query& query, std::size_t k) const {
+CoarseBlock BlockScan::coarse_block(std::size_t block) const {
+  const std::size_t at =
+      block / kGroupBlocks * num_dimensions_ * kGroupBlocks + block % kGroupBlocks;
+  return {&codes_[block * num_dimensions_ * kBlockRows], &low_[at], &high_[at]};
+}
+
+// A distance within which the k nearest rows most likely are: that of a row of the sample which has
+// a few more nearer to the query than k rows' share.
+float BlockScan::sampled_radius(const Query& query, std::size_t k) const {
   const double share = static_cast<double>(k) / kSampledEach;
   const auto rank = static_cast<std::size_t>(std::ceil(share + 2.5 * std::sqrt(share) + 4.0));
   if (rank >= num_sampled_) return kInfinity;
-  static thread_local std::vector<float> squared;
-  squared.assign(num_sampled_, 0.0F);
+  static thread_local std::vector<float> distances;
+  distances.assign(num_sampled_, 0.0F);
   constexpr std::size_t kChunk = 2048;  // stays in the nearest cache
   for (std::size_t begin = 0; begin < num_sampled_; begin += kChunk) {
     const std::size_t count = std::min(kChunk, num_sampled_ - begin);
-    for (std::size_t d = 0; d < num_dimensions_; ++d)
-      block_kernels().add_squares(query.turned[d], &sample_[d * num_sampled_ + begin], count,
-                                  &squared[begin]);
+    for (const auto& [dimension, value] : query.values)
+      block_kernels().add_squares(value, &sample_[dimension * num_sampled_ + begin], count,
+                                  &distances[begin]);
   }
-  const auto at = squared.begin() + static_cast<std::ptrdiff_t>(rank);
-  std::nth_element(squared.begin(), at, squared.end());
-  return *at;
+  const auto at = distances.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(distances.begin(), at, distances.end());
+  return std::sqrt(*at);
 }
 
-// Collects the rows within the bound; false when those are fewer than k.
-bool BlockScan::scan(const Query& query, std::size_t k, float bound,
-                     std::vector<std::uint32_t>& places) const {
-  const BlockKernels& kernels = block_kernels();
-  static thread_local std::vector<float> box_distance;
-  box_distance.assign(num_blocks_, 0.0F);
-  for (std::size_t d = 0; d < num_dimensions_; ++d)
-    kernels.add_outside(query.turned[d], &low_[d * num_blocks_], &high_[d * num_blocks_],
-                        num_blocks_, box_distance.data());
-  const float limit = query.at_most(query.at_most(bound));
-  std::size_t num_within = 0;
-  places.clear();
-  for (std::size_t b = 0; b < num_blocks_; ++b) {
-    if (box_distance[b] > limit) continue;
-    const float* block = &blocks_[b * num_dimensions_ * kBlock];
-    std::array<float, kBlock> squared{};
-    std::size_t done = 0;
-    bool is_near = true;
-    for (std::size_t next = std::min(kFirst, num_dimensions_); is_near && done < num_dimensions_;
-         next = std::min(next + kStep, num_dimensions_)) {
-      is_near = kernels.add_block(query.turned.data(), block, done, next, limit, squared.data());
-      done = next;
-    }
-    if (!is_near) continue;
-    const std::size_t count = std::min(kBlock, num_rows_ - b * kBlock);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (squared[i] > limit) continue;
-      num_within += squared[i] <= bound ? 1 : 0;
-      places.push_back(places_[b * kBlock + i]);
-    }
+// Collects the rows that may be within the radius.
+void BlockScan::scan(const Query& query, float radius, Candidates& found) const {
+  static thread_local std::vector<float> outside;
+  outside.assign(num_groups_, 0.0F);
+  for (const auto& [dimension, value] : query.values)
+    block_kernels().add_outside(value, &group_low_[dimension * num_groups_],
+                                &group_high_[dimension * num_groups_], num_groups_, outside.data());
+  const float limit = squared(query.reach(radius));
+  found.places.clear();
+  found.at_most.clear();
+  for (std::size_t g = 0; g < num_groups_; ++g)
+    if (outside[g] <= limit) scan_group(query, radius, g, found);
+}
+
+void BlockScan::scan_group(const Query& query, float radius, std::size_t group,
+                           Candidates& found) const {
+  std::array<float, kGroupBlocks> outside{};
+  for (const auto& [dimension, value] : query.values) {
+    const std::size_t at = (group * num_dimensions_ + dimension) * kGroupBlocks;
+    block_kernels().add_outside(value, &low_[at], &high_[at], kGroupBlocks, outside.data());
   }
-  return num_within >= k;
+  const float limit = squared(query.reach(radius));
+  const std::size_t begin = group * kGroupBlocks;
+  for (std::size_t i = 0; i < std::min(kGroupBlocks, num_blocks_ - begin); ++i)
+    if (outside[i] <= limit) scan_block(query, radius, begin + i, found);
+}
+
+void BlockScan::scan_block(const Query& query, float radius, std::size_t block,
+                           Candidates& found) const {
+  const CoarseBlock coarse = coarse_block(block);
+  const float limit = squared(query.reach(radius) + error_[block]);
+  const std::span<const AskedValue> asked = query.values;
+  std::array<float, kBlockRows> distances{};
+  for (std::size_t done = 0; done < asked.size();) {
+    const std::size_t count = std::min(done == 0 ? kFirst : kStep, asked.size() - done);
+    if (!block_kernels().add_block(coarse, asked.subspan(done, count), limit, distances.data()))
+      return;
+    done += count;
+  }
+  const std::size_t begin = block * kBlockRows;
+  for (std::size_t i = 0; i < std::min(kBlockRows, num_rows_ - begin); ++i) {
+    if (distances[i] > limit) continue;
+    found.places.push_back(places_[begin + i]);
+    found.at_most.push_back(query.reach(std::sqrt(distances[i])) + error_[block]);
+  }
 }
 
 void BlockScan::near_rows(std::span<const float> query, std::size_t k,
                           std::vector<std::uint32_t>& places) const {
-  const Eigen::VectorXd off =
-      Eigen::Map<const Eigen::VectorXf>(query.data(), static_cast<Eigen::Index>(query.size()))
-          .cast<double>() -
-      mean_;
-  const Eigen::VectorXd turned = R_feature_axes_.transpose() * off;
-  Query on_axes;
-  on_axes.turned.assign(num_dimensions_, 0.0F);
-  for (std::size_t d = 0; d < num_dimensions_; ++d)
-    on_axes.turned[d] = static_cast<float>(turned[static_cast<Eigen::Index>(d)]);
-  on_axes.rounding = static_cast<float>(kOfLength * (largest_norm_ + turned.norm()));
-  float bound = sampled_bound(on_axes, k);
-  // Without a finite bound, as for a query that is infinite, all rows are near.
-  while (!scan(on_axes, k, bound, places) && std::isfinite(bound))
-    bound = bound > 0.0F ? 2.0F * bound : on_axes.at_most(0.0F) + 1e-30F;
+  static thread_local Query asked;
+  asked.values.clear();
+  float squared_norm = 0.0F;
+  for (const std::size_t d : dimensions_) {
+    if (std::isnan(query[d])) continue;
+    asked.values.push_back({d, query[d]});
+    squared_norm += squared(query[d]);
+  }
+  asked.rounding = kOfLength * (largest_norm_ + std::sqrt(squared_norm)) + 1e-30F;
+  static thread_local std::vector<float> at_most;
+  Candidates found{places, at_most};
+  float radius = sampled_radius(asked, k);
+  scan(asked, radius, found);
+  while (places.size() < k) scan(asked, radius = 1.5F * radius + asked.rounding, found);
+  // Without a finite radius, as for a query that is infinite, all rows are near.
+  if (!std::isfinite(radius)) return;
+  if (const float certain = found.surely_within(k); certain > radius) scan(asked, certain, found);
 }
 
 }  // namespace sparse_mocap::retrieval

@@ -2,6 +2,7 @@
 #include "sparse_mocap/retrieval/knn_index.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sparse_mocap/base/sort_keys.hpp"
 #include "sparse_mocap/retrieval/block_scan.hpp"
 
 namespace sparse_mocap::retrieval {
@@ -34,7 +36,6 @@ class NearestSet {
     buffer_.reserve(4 * k);
   }
 
-  std::size_t num_wanted() const { return k_; }
   std::size_t size() const { return buffer_.size(); }
   bool empty() const { return buffer_.empty(); }
   bool full() const { return buffer_.size() >= k_; }
@@ -111,6 +112,35 @@ struct RowDistance {
   }
 };
 
+// Distances in the dimensions that a query has; the others are NaN.
+class KnownValues {
+ public:
+  explicit KnownValues(std::span<const float> query) {
+    const Eigen::Map<const Eigen::ArrayXf> asked(query.data(),
+                                                 static_cast<Eigen::Index>(query.size()));
+    const Eigen::ArrayXf zero = Eigen::ArrayXf::Zero(asked.size());
+    is_known_ = asked.isNaN().select(zero, 1.0F);
+    values_ = asked.isNaN().select(zero, asked);
+  }
+  float squared_distance(const float* row) const {
+    const Eigen::Map<const Eigen::ArrayXf> there(row, values_.size());
+    return ((values_ - there) * is_known_).square().sum();
+  }
+
+ private:
+  Eigen::ArrayXf values_, is_known_;
+};
+
+// A squared distance and a place in one number, which sorts as the pair does: floats that are not
+// negative are ordered as their bits.
+std::uint64_t key_of(float squared, std::uint32_t place) {
+  return (static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(squared)) << 32) | place;
+}
+
+struct Found {
+  std::vector<std::uint64_t> keys, scratch;
+};
+
 using NanoflannTree = nanoflann::KDTreeSingleIndexAdaptor<RowDistance, Points, -1, std::uint32_t>;
 
 }  // namespace
@@ -144,29 +174,43 @@ struct KnnIndex::Searched {
     return features.data() + rows[place] * features.cols();
   }
 
-  void search(std::span<const float> query, NearestSet& nearest) const {
-    if (std::any_of(query.begin(), query.end(), [](float v) { return std::isnan(v); }))
-      return scan_known_dimensions(query, nearest);
-    if (tree) {
+  // The nearest k as keys: ascending, the places of equally far rows too.
+  void search(std::span<const float> query, std::size_t k, Found& found) const {
+    found.keys.clear();
+    if (blocks) return search_blocks(query, k, found);
+    static thread_local std::vector<Candidate> buffer;
+    NearestSet nearest(k, buffer);
+    if (std::any_of(query.begin(), query.end(), [](float v) { return std::isnan(v); })) {
+      const KnownValues known(query);
+      for (std::uint32_t i = 0; i < rows.size(); ++i)
+        nearest.addPoint(known.squared_distance(row(i)), i);
+    } else {
       tree->findNeighbors(nearest, query.data(), {});
-      return;
     }
-    static thread_local std::vector<std::uint32_t> places;
-    blocks->near_rows(query, nearest.num_wanted(), places);
-    for (const auto place : places)
-      nearest.addPoint(squared_distance(query.data(), row(place), query.size()), place);
+    nearest.finish();
+    for (const auto& [squared, place] : buffer) found.keys.push_back(key_of(squared, place));
   }
 
-  // Silent dimensions change the metric, which neither cells nor boxes know of.
-  void scan_known_dimensions(std::span<const float> query, NearestSet& nearest) const {
-    const auto size = static_cast<Eigen::Index>(query.size());
-    const Eigen::Map<const Eigen::ArrayXf> asked(query.data(), size);
-    const Eigen::ArrayXf is_known = asked.isNaN().select(Eigen::ArrayXf::Zero(size), 1.0F);
-    const Eigen::ArrayXf known = asked.isNaN().select(Eigen::ArrayXf::Zero(size), asked);
-    for (std::uint32_t i = 0; i < rows.size(); ++i) {
-      const Eigen::Map<const Eigen::ArrayXf> values(row(i), size);
-      nearest.addPoint(((known - values) * is_known).square().sum(), i);
+  void search_blocks(std::span<const float> query, std::size_t k, Found& found) const {
+    static thread_local std::vector<std::uint32_t> places;
+    blocks->near_rows(query, k, places);
+    const bool all_known =
+        std::none_of(query.begin(), query.end(), [](float v) { return std::isnan(v); });
+    const KnownValues known(query);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      constexpr std::size_t kAhead = 16;  // rows that are fetched into the cache meanwhile
+      if (i + kAhead < places.size()) __builtin_prefetch(row(places[i + kAhead]));
+      const float* values = row(places[i]);
+      const float squared = all_known ? squared_distance(query.data(), values, query.size())
+                                      : known.squared_distance(values);
+      if (std::isfinite(squared)) found.keys.push_back(key_of(squared, places[i]));
     }
+    if (found.keys.size() > k) {
+      const auto last = found.keys.begin() + static_cast<std::ptrdiff_t>(k);
+      std::nth_element(found.keys.begin(), last, found.keys.end());
+      found.keys.erase(last, found.keys.end());
+    }
+    sort_keys(found.keys, found.scratch);
   }
 
   FeatureRows features;
@@ -189,15 +233,15 @@ const FeatureRows& KnnIndex::features() const { return searched_->features; }
 void KnnIndex::search(std::span<const float> query, int k, std::vector<Neighbour>& out) const {
   if (k < 1 || static_cast<int>(query.size()) != num_dimensions())
     throw std::invalid_argument("KnnIndex: k must be positive and the query of the features' size");
-  static thread_local std::vector<Candidate> buffer;
-  const auto count = std::min(static_cast<std::size_t>(k), searched_->rows.size());
-  NearestSet nearest(count, buffer);
-  searched_->search(query, nearest);
-  nearest.finish();
+  static thread_local Found found;
+  searched_->search(query, std::min(static_cast<std::size_t>(k), searched_->rows.size()), found);
   out.clear();
   // Rows are listed in ascending order, so place and row number sort alike.
-  for (const auto& [squared, place] : buffer)
+  for (const std::uint64_t key : found.keys) {
+    const auto squared = std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32));
+    const auto place = static_cast<std::uint32_t>(key);
     out.push_back({std::sqrt(squared), static_cast<int>(searched_->rows[place])});
+  }
 }
 
 }  // namespace sparse_mocap::retrieval

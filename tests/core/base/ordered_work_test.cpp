@@ -114,5 +114,21 @@ TEST(OrderedWork, AsksTheCallerNowAndThenWhileAPieceTakesLong) {
   EXPECT_GE(asked, 2);
 }
 
+TEST(InPieces, DoesAllOnceOnAnyNumberOfThreads) {
+  for (const int num_threads : {0, 1, 2, 7})
+    for (const std::size_t count : {0U, 1U, 9U, 10U, 11U, 95U}) {
+      std::vector<int> done(count, 0);
+      in_pieces(count, 10, num_threads, [&](std::size_t i) { ++done[i]; });
+      EXPECT_EQ(done, std::vector<int>(count, 1));
+    }
+}
+
+TEST(InPieces, ThrowsWhatWorkThrew) {
+  for (const int num_threads : {1, 3})
+    EXPECT_REFUSED(std::runtime_error, "at 42", in_pieces(100, 10, num_threads, [](std::size_t i) {
+                     if (i == 42) throw std::runtime_error("at 42");
+                   }));
+}
+
 }  // namespace
 }  // namespace sparse_mocap

@@ -77,7 +77,8 @@ void expect_same_but_for_near_ties(const KnnIndex& index, const std::vector<floa
   for (std::size_t i = 0; i < found.size(); ++i) {
     const auto row = index.features().row(found[i].row).cast<double>();
     const Eigen::Map<const Eigen::RowVectorXf> asked(query.data(), row.size());
-    const double distance = (row - asked.cast<double>()).norm();
+    const Eigen::RowVectorXd off = row - asked.cast<double>();
+    const double distance = off.array().isNaN().select(0.0, off).matrix().norm();
     EXPECT_NEAR(found[i].distance, distance, 1e-6 * (1.0 + distance));
     ASSERT_NEAR(found[i].distance, expected[i].distance, 2e-6F * (1.0F + expected[i].distance));
     rows.insert(found[i].row);
@@ -142,10 +143,41 @@ TEST(KnnIndex, FindsWhatBruteForceFindsInReadingsThatWander) {
   }
 }
 
-TEST(KnnIndex, FindsAllWhereEverySixteenthRowIsNearer) {
+TEST(KnnIndex, FindsWhatBruteForceFindsWithSilentSensors) {
+  Random random(12);
+  for (const Eigen::Index columns : {12, 24}) {
+    const KnnIndex index(wandering_rows(random, 20'000, columns));
+    const FeatureRows queries = wandering_rows(random, 12, columns);
+    for (Eigen::Index q = 0; q < queries.rows(); ++q) {
+      std::vector<float> query(queries.row(q).begin(), queries.row(q).end());
+      const Eigen::Index silent = q % 4;  // of four sensors, three axes in every twelve columns
+      for (Eigen::Index d = 0; d < columns; ++d)
+        if (d % 12 / 3 == silent || (q >= 8 && d % 12 / 3 == (silent + 1) % 4))
+          query[static_cast<std::size_t>(d)] = kNan;
+      for (const int k : {1, 256, 4096}) expect_same_but_for_near_ties(index, query, k);
+    }
+  }
+}
+
+TEST(KnnIndex, FindsAllInBlocksOfFarValues) {
+  Random random(13);
+  FeatureRows rows = random_rows(random, 20'000, 12, smooth);
+  for (Eigen::Index r = 0; r < rows.rows(); r += 100) rows.row(r) *= 1e4F;  // coarse codes
+  const KnnIndex index(rows);
+  for (const int k : {1, 100, 4096})
+    expect_same_but_for_near_ties(index, random_query(random, 12, smooth), k);
+}
+
+TEST(KnnIndex, AnswersAQueryOfNothing) {
+  Random random(14);
+  const KnnIndex index(random_rows(random, 1000, 12, smooth));
+  expect_same(index, std::vector<float>(12, kNan), 3, {{0.0F, 0}, {0.0F, 1}, {0.0F, 2}});
+}
+
+TEST(KnnIndex, FindsAllWhereTheRowsOfTheSampleAreNearer) {
   Random random(10);
-  FeatureRows rows = random_rows(random, 8000, 12, smooth);
-  for (Eigen::Index r = 0; r < rows.rows(); r += 16) rows.row(r) *= 1e-3F;
+  FeatureRows rows = random_rows(random, 16'000, 12, smooth);
+  for (Eigen::Index r = 0; r < rows.rows(); r += 32) rows.row(r) *= 1e-3F;
   const KnnIndex index(rows);
   const std::vector<float> query(12, 0.0F);
   for (const int k : {1, 400, 600, 4096}) expect_same_but_for_near_ties(index, query, k);
