@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sparse_mocap/base/ordered_work.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 #include "sparse_mocap/motion/standard_skeleton.hpp"
 
@@ -43,7 +44,8 @@ Mat3 rotation_vector_slopes(const Vec3& v) {
 
 FitEquations::FitEquations(const Skeleton& skeleton, double frame_time_s, const FitWeights& weights,
                            std::span<const FittedFrame> frames,
-                           std::span<const FrameTarget> targets, int first_free, bool with_system)
+                           std::span<const FrameTarget> targets, int first_free, bool with_system,
+                           int num_threads)
     : skeleton_(skeleton),
       frame_time_s_(frame_time_s),
       weights_(weights),
@@ -54,9 +56,14 @@ FitEquations::FitEquations(const Skeleton& skeleton, double frame_time_s, const 
       seen_(frames.size()) {
   const int n = static_cast<int>(frames.size());
   if (with_system) system_.emplace(n - first_free, num_angles_ + static_cast<int>(kRootUnknowns));
-  for (int t = std::max(0, first_free - BandedSystem::kReach); t < n; ++t) see(t);
+  const auto each_frame = [&](int begin, const auto& work) {
+    constexpr std::size_t kPiece = 64;
+    in_pieces(static_cast<std::size_t>(n - begin), kPiece, num_threads,
+              [&](std::size_t i) { work(begin + static_cast<int>(i)); });
+  };
+  each_frame(std::max(0, first_free - BandedSystem::kReach), [&](int t) { see(t); });
   for (int t = first_free; t < n; ++t) add_frame(t);
-  for (int t = first_free; system_ && t < n; ++t) add_points_to_system(t);
+  if (system_) each_frame(first_free, [&](int t) { add_points_to_system(t); });
 }
 
 void FitEquations::see(int t) {

@@ -18,7 +18,7 @@ class FitEquations {
  public:
   FitEquations(const Skeleton& skeleton, double frame_time_s, const FitWeights& weights,
                std::span<const FittedFrame> frames, std::span<const FrameTarget> targets,
-               int first_free, bool with_system);
+               int first_free, bool with_system, int num_threads = 1);
 
   double value() const { return value_; }
   BandedSystem& system() { return *system_; }

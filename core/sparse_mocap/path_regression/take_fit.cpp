@@ -54,7 +54,7 @@ JointRotations rotations_near(const Skeleton& skeleton, const Eigen::VectorXd& p
 double TakeFit::value(const std::vector<FittedFrame>& frames, std::span<const FrameTarget> targets,
                       std::size_t first_free) const {
   return FitEquations(skeleton_, frame_time_s_, weights_, frames, targets,
-                      static_cast<int>(first_free), false)
+                      static_cast<int>(first_free), false, num_threads_)
       .value();
 }
 
@@ -64,7 +64,7 @@ double TakeFit::fit(std::vector<FittedFrame>& frames, std::span<const FrameTarge
   double reached = value(frames, targets, first_free);
   for (int iteration = 0; iteration < max_iterations && damping < kMostDamping; ++iteration) {
     FitEquations equations(skeleton_, frame_time_s_, weights_, frames, targets,
-                           static_cast<int>(first_free), true);
+                           static_cast<int>(first_free), true, num_threads_);
     equations.system().damp(damping);
     Eigen::MatrixXd steps;
     if (!equations.system().solve(steps)) break;

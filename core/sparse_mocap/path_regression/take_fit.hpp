@@ -42,9 +42,14 @@ struct FitWeights {
 // step is the solution of one banded system.
 class TakeFit {
  public:
-  // The skeleton must outlive the fit.
-  TakeFit(const Skeleton& skeleton, double frame_time_s, const FitWeights& weights)
-      : skeleton_(skeleton), frame_time_s_(frame_time_s), weights_(weights) {}
+  // The skeleton must outlive the fit. The result does not depend on the number of threads (0: one
+  // a processor).
+  TakeFit(const Skeleton& skeleton, double frame_time_s, const FitWeights& weights,
+          int num_threads = 1)
+      : skeleton_(skeleton),
+        frame_time_s_(frame_time_s),
+        weights_(weights),
+        num_threads_(num_threads) {}
 
   // Fits frames [first_free, end) from where they are; those before stay. One target a frame.
   // Gives the value that is reached, never more than at the start.
@@ -58,6 +63,7 @@ class TakeFit {
   const Skeleton& skeleton_;
   double frame_time_s_;
   FitWeights weights_;
+  int num_threads_;
 };
 
 // Where a fit of a frame can start: a pose that has its points about where the target asks for

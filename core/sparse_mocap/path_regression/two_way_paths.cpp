@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "sparse_mocap/retrieval/neighbourhood.hpp"
+
 namespace sparse_mocap::path_regression {
 namespace {
 
@@ -20,7 +22,7 @@ TwoWayPaths::TwoWayPaths(const std::vector<std::int32_t>& clip_of_frame,
       last_frame_(static_cast<int>(clip_of_frame.size()) - 1),
       config_(config) {}
 
-void TwoWayPaths::run(std::span<const std::vector<retrieval::Neighbour>> columns) {
+void TwoWayPaths::run(std::span<const std::vector<retrieval::Neighbour>> columns, int num_paths) {
   paths_.assign(columns.size(), {});
   forward_.reset();
   for (std::size_t t = 0; t < columns.size(); ++t) {
@@ -41,6 +43,8 @@ void TwoWayPaths::run(std::span<const std::vector<retrieval::Neighbour>> columns
       paths_[t][i].reward += backward_.paths()[i].reward - own;
       paths_[t][i].length += backward_.paths()[i].length - 1;
     }
+    paths_[t] = retrieval::best_paths(paths_[t], num_paths);
+    paths_[t].shrink_to_fit();
   }
 }
 

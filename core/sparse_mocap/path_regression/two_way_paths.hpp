@@ -16,9 +16,10 @@ class TwoWayPaths {
  public:
   TwoWayPaths(const std::vector<std::int32_t>& clip_of_frame, const retrieval::OlngConfig& config);
 
-  // columns[t] holds the neighbours of reading t, as KnnIndex::search gives them.
-  void run(std::span<const std::vector<retrieval::Neighbour>> columns);
-  // For each neighbour of reading t the best path through it.
+  // columns[t] holds the neighbours of reading t, as KnnIndex::search gives them. Of each reading
+  // the num_paths best paths are kept.
+  void run(std::span<const std::vector<retrieval::Neighbour>> columns, int num_paths);
+  // The best paths through the neighbours of reading t, one a neighbour, the best first.
   const std::vector<retrieval::Path>& paths(std::size_t t) const { return paths_[t]; }
 
  private:

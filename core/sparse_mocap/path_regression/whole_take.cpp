@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/path_regression/whole_take.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "sparse_mocap/base/ordered_work.hpp"
 #include "sparse_mocap/path_regression/take_fit.hpp"
 #include "sparse_mocap/path_regression/two_way_paths.hpp"
 
@@ -20,6 +22,22 @@ retrieval::FeatureRows signal_rows(const std::vector<Reading>& take,
 
 }  // namespace
 
+// of(i) for each i < count, worked out on all threads; reached(i) is called on this one on the way.
+template <typename Result, typename Reached, typename Of>
+std::vector<Result> WholeTakeReconstructor::in_parallel(std::size_t count, const Reached& reached,
+                                                        const Of& of) const {
+  constexpr std::size_t kPiece = 16;  // frames
+  std::vector<Result> results(count);
+  const auto work = [&](std::size_t piece, const std::stop_token&) {
+    const std::size_t begin = piece * kPiece, end = std::min(count, begin + kPiece);
+    for (std::size_t i = begin; i < end; ++i) results[i] = of(i);
+    return piece;
+  };
+  work_in_order((count + kPiece - 1) / kPiece, num_threads_, work, [](std::size_t, std::size_t) {},
+                [&](std::size_t p) { reached(p * kPiece); });
+  return results;
+}
+
 // The whole take in one fit.
 std::vector<PoseEstimate> WholeTakeReconstructor::fitted(
     const std::vector<Reading>& take, std::vector<RetrievedFrame> retrieved) const {
@@ -31,7 +49,8 @@ std::vector<PoseEstimate> WholeTakeReconstructor::fitted(
                               frames.empty() ? nullptr : &frames.back()));
   }
   const Config& config = solver_.config();
-  TakeFit(skeleton(), 1.0 / rate_hz(), config.fit).fit(frames, targets, 0, config.max_iterations);
+  TakeFit(skeleton(), 1.0 / rate_hz(), config.fit, num_threads_)
+      .fit(frames, targets, 0, config.max_iterations);
   std::vector<PoseEstimate> estimates;
   for (std::size_t t = 0; t < frames.size(); ++t)
     estimates.push_back(to_estimate(frames[t], take[t].time_s, targets[t].feet.certainty,
@@ -46,20 +65,23 @@ std::vector<PoseEstimate> WholeTakeReconstructor::solve(const std::vector<Readin
   const auto window = [&](std::size_t t) {
     return retrieval::SignalWindow{signals, 0, signals.rows(), static_cast<Eigen::Index>(t)};
   };
-  std::vector<std::vector<retrieval::Neighbour>> columns(take.size());
-  for (std::size_t t = 0; t < take.size(); ++t) {
-    progress.report(t, 2 * take.size(), "searching");
-    solver_.search(window(t), columns[t]);
-  }
+  using Neighbours = std::vector<retrieval::Neighbour>;
+  std::vector<Neighbours> columns = in_parallel<Neighbours>(
+      take.size(), [&](std::size_t t) { progress.report(t, 2 * take.size(), "searching"); },
+      [&](std::size_t t) {
+        Neighbours found;
+        solver_.search(window(t), found);
+        return found;
+      });
   const Config& config = solver_.config();
   TwoWayPaths paths(retrieval::clips_of_frames(solver_.database()),
                     {config.penalty, config.forgetting});
-  paths.run(columns);
-  std::vector<RetrievedFrame> retrieved;
-  for (std::size_t t = 0; t < take.size(); ++t) {
-    progress.report(take.size() + t, 2 * take.size(), "reconstructing");
-    retrieved.push_back(solver_.retrieve(paths.paths(t), window(t), take[t]));
-  }
+  paths.run(columns, config.num_paths);
+  columns = {};
+  auto retrieved = in_parallel<RetrievedFrame>(
+      take.size(),
+      [&](std::size_t t) { progress.report(take.size() + t, 2 * take.size(), "reconstructing"); },
+      [&](std::size_t t) { return solver_.retrieve(paths.paths(t), window(t), take[t]); });
   return fitted(take, std::move(retrieved));
 }
 

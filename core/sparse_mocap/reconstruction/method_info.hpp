@@ -66,6 +66,7 @@ struct MethodContext {
   std::optional<Skeleton> body;  // the performer's own standard skeleton
   std::vector<Sensor> sensors;
   std::vector<int> excluded_clips;  // of the database, as if they were not in it
+  int num_threads = 0;              // of whole takes; 0: one a processor. The result is the same
 };
 
 // A preset, and options that differ from it.

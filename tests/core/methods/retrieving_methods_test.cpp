@@ -144,6 +144,16 @@ TEST_P(EachWay, GivesTheSameResultsAgain) {
   expect_same(made()(take_, Progress()), first);
 }
 
+TEST_P(EachWay, GivesTheSameResultsOnAnyNumberOfThreads) {
+  const auto on = [&](int num_threads) {
+    MethodContext context{shared_database(), nullptr, {}, paper_sensors(), {}};
+    context.num_threads = num_threads;
+    return solver(GetParam(), context)(take_, Progress());
+  };
+  const auto on_one = on(1);
+  for (const int num_threads : {0, 2, 5}) expect_same(on(num_threads), on_one);
+}
+
 TEST_P(EachWay, HangsOnNoRounding) {
   const auto solve = made();
   const auto& skeleton = shared_database()->skeleton();
