@@ -77,6 +77,8 @@ class MotionDatabase:
     model_names: list[str]
     def model(self, method: str) -> Model:
         """What a method learned and keeps here, see store_model. Raises FormatError."""
+    def section(self, name: str, version: int) -> dict[str, str] | None:
+        """The texts of an optional part, None where it is missing or was made from other rows."""
     @property
     def sections(self) -> list[str]:
         """The names of the optional parts that it holds."""
@@ -89,6 +91,15 @@ class MotionDatabase:
     @property
     def other_tensors(self) -> list[tuple[str, str, tuple[int, ...], int]]:
         """Tensors that other programs put into the file: name, element type, shape, bytes."""
+
+def store_section(
+    database: Path, name: str, texts: Mapping[str, str], *, version: int, rows: str = ""
+) -> None:
+    """Puts an optional part of texts into a motion database, in place of one of its name.
+
+    rows: the rows_hash of the rows that it was made from, empty when it belongs to any. The file
+    is replaced atomically. Raises FormatError, OSError and ValueError.
+    """
 
 def find_motion_files(
     sources: Sequence[Path], exclude: Sequence[str] = (), read: ReadOptions = ...

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Motion databases: built from motion files, and files added to one.
 
-Both find the files' labels (see labels) and leave the rest to the core.
+Both find the files' labels (see labels), leave the rest to the core, and learn then what good and
+poor reconstructions look like (see quality).
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING
 from . import _core
 from .labels import find_labels
 from .motion_files import read_options
+from .quality import calibrate_quality
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -55,7 +57,7 @@ def build_database(
     """
     labels, warnings = find_labels(sources, exclude, metadata)
     options.setdefault("read", read_options())
-    return _core.build_database(
+    report = _core.build_database(
         sources,
         output,
         rate_hz=rate_hz,
@@ -67,6 +69,8 @@ def build_database(
         label_warnings=warnings,
         **options,
     )
+    calibrate_quality(output)
+    return report
 
 
 def add_to_database(
@@ -88,7 +92,7 @@ def add_to_database(
     """
     labels, warnings = find_labels(sources, exclude, metadata)
     options.setdefault("read", read_options())
-    return _core.add_to_database(
+    report = _core.add_to_database(
         database,
         sources,
         output,
@@ -98,3 +102,5 @@ def add_to_database(
         rebuild=rebuild,
         **options,
     )
+    calibrate_quality(database if output is None else output)
+    return report

@@ -10,55 +10,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._core import GRAVITY_MPS2, Clip, MotionDatabase, PoseEstimate, Reconstruction
+from .quality import Quality, quality_of
 from .take import Take
 
 Floats = NDArray[np.float64]
 
 __all__ = [
-    "LARGEST_MISFIT",
     "LiveMatch",
-    "is_unlike_the_database",
     "match",
     "match_of",
     "mean_misfit_mps2",
-    "relative_misfit",
     "report",
     "unit_warnings",
 ]
 
 GOOD_BELOW_MPS2, FAIR_BELOW_MPS2 = 2.5, 4.5
-"""Limits of the misfit, the mean distance between retrieved and measured readings.
+"""Limits of the misfit live, the mean distance between retrieved and measured readings.
 
 Of 143 HDM05 clips reconstructed from databases with the performer, without, or without such
 movements, those below the first had a median error of 8 cm and one in 30 was worse than a constant
 pose; those between 11 cm and 10 in 52; those above 17 cm and 42 in 61.
 """
 
-LARGEST_MISFIT = 0.78
-"""As a part of how much the readings vary; beyond it the match is poor.
-
-Of HDM05 and CMU clips reconstructed from other people's or other motions, two in three of those
-that came out worse than a constant pose are above it, and one in eight of the better ones.
-"""
-
 _FASTEST_RADPS = 15.0  # on median; nobody turns a limb so fast for long
-_QUIET_MPS2 = 1.0  # readings that vary less than this match anything
 
 
 def mean_misfit_mps2(solved: Reconstruction) -> float:
     """Returns how far retrieved readings are from measured ones, over sensors and frames."""
     return _mean(_diagnostic(solved, "sensor_misfit_mps2"))
-
-
-def relative_misfit(solved: Reconstruction) -> float:
-    """Returns the misfit as a part of how much the readings vary; 0 is a perfect match."""
-    variation: list[float] = []
-    for sensor in np.moveaxis(np.asarray(solved.readings.specific_force), 1, 0):
-        measured = sensor[np.isfinite(sensor).all(axis=1)]
-        variation.extend(
-            np.linalg.norm(measured - measured.mean(axis=0), axis=1) if len(measured) else ()
-        )
-    return mean_misfit_mps2(solved) / max(float(np.mean(variation or [0.0])), _QUIET_MPS2)
 
 
 def match_of(misfit_mps2: float) -> str:
@@ -68,9 +47,13 @@ def match_of(misfit_mps2: float) -> str:
     return "good" if misfit_mps2 < GOOD_BELOW_MPS2 else "fair"
 
 
-def match(solved: Reconstruction) -> str:
-    """Returns how well the sensors of a take match: "poor" where the result is a guess."""
-    return "poor" if is_unlike_the_database(solved) else match_of(mean_misfit_mps2(solved))
+def match(solved: Reconstruction, database: MotionDatabase | None = None) -> str:
+    """Returns how good a take is likely to be, as quality_of() says, by the database it is from.
+
+    For methods that tell nothing but the misfit it is match_of() that.
+    """
+    quality = quality_of(solved, database)
+    return match_of(mean_misfit_mps2(solved)) if quality is None else quality.label
 
 
 class LiveMatch:
@@ -90,11 +73,6 @@ class LiveMatch:
     def match(self) -> str:
         """How well they match, as match_of() says; empty before there are poses."""
         return match_of(float(np.mean(self._misfits))) if self._misfits else ""
-
-
-def is_unlike_the_database(solved: Reconstruction) -> bool:
-    """Whether the database has nothing like the performance, so that the result is a guess."""
-    return relative_misfit(solved) > LARGEST_MISFIT
 
 
 def unit_warnings(take: Take) -> list[str]:
@@ -124,7 +102,7 @@ def report(solved: Reconstruction, database: MotionDatabase | None) -> dict[str,
     misfit = _diagnostic(solved, "sensor_misfit_mps2")
     spread = _diagnostic(solved, "spread_m")
     clips = _clip_names(solved, database)
-    relative = relative_misfit(solved)
+    quality = quality_of(solved, database)
     frames = [
         {
             "time_s": round(time, 6),
@@ -138,13 +116,21 @@ def report(solved: Reconstruction, database: MotionDatabase | None) -> dict[str,
     ]
     return {
         "sites": solved.readings.sites,
-        "match": match(solved),
-        "relative_misfit": _rounded(relative),
-        "is_unlike_the_database": is_unlike_the_database(solved),
+        "match": match(solved, database),
+        "quality": None if quality is None else _told(quality),
+        "is_unlike_the_database": quality is not None and quality.is_unlike_the_database,
         "mean_misfit_mps2": _rounded(_mean(misfit)),
         "mean_spread_m": _rounded(_mean(spread)),
         "clips": dict(Counter(name for name in clips if name is not None).most_common()),
         "frames": frames,
+    }
+
+
+def _told(quality: Quality) -> dict[str, Any]:
+    return {
+        "expected_share_of_mean_pose_error": _rounded(quality.share),
+        "seconds": list(quality.second_labels),
+        "advice": quality.advice,
     }
 
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <optional>
 
 #include "common.hpp"
 #include "sparse_mocap/database/clip_motion.hpp"
@@ -86,6 +88,15 @@ std::map<std::string, std::size_t> array_bytes(const MotionDatabase& database) {
           {"up", num_sites * bytes_of(site.gravity_direction)}};
 }
 
+using Texts = std::map<std::string, std::string>;
+
+std::optional<Texts> section_texts(const MotionDatabase& database, const std::string& name,
+                                   int version) {
+  const Section* section = database.section(name);
+  if (section == nullptr || section->version != version) return std::nullopt;
+  return section->metadata;
+}
+
 std::vector<std::string> section_names(const MotionDatabase& database) {
   std::vector<std::string> names;
   for (const auto& [name, section] : sections_of(database.further()))
@@ -153,6 +164,8 @@ angular_velocity, up.)doc")
           "What a method learned and keeps here, see store_model. Raises FormatError.")
       .def_property_readonly("array_bytes", &array_bytes,
                              "What its rows take in the file, by the names of array().")
+      .def("section", &section_texts, py::arg("name"), py::arg("version"),
+           "The texts of an optional part, None where it is missing or was made from other rows.")
       .def_property_readonly("sections", &section_names,
                              "The names of the optional parts that it holds.")
       .def_property_readonly("rows_hash", &MotionDatabase::rows_hash,
@@ -196,6 +209,18 @@ void bind_database(py::module_& m) {
       .def_property_readonly("build_info", &MotionDatabase::build_info,
                              "JSON: options and counts of the build.");
   bind_content(database);
+  m.def(
+      "store_section",
+      [](const std::filesystem::path& path, const std::string& name, const Texts& texts,
+         int version, const std::string& rows) {
+        store_section(path, name, {version, rows, texts, {}});
+      },
+      py::arg("database"), py::arg("name"), py::arg("texts"), py::kw_only(), py::arg("version"),
+      py::arg("rows") = "", py::call_guard<py::gil_scoped_release>(),
+      R"doc(Puts an optional part of texts into a motion database, in place of one of its name.
+
+rows: the rows_hash of the rows that it was made from, empty when it belongs to any. The file is
+replaced atomically. Raises FormatError, OSError and ValueError.)doc");
 }
 
 }  // namespace sparse_mocap::python

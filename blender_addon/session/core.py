@@ -23,6 +23,7 @@ MODULES = (
     "sparse_mocap.methods",
     "sparse_mocap.readings",
     "sparse_mocap.reconstruction",
+    "sparse_mocap.quality",
     "sparse_mocap.report",
     "sparse_mocap.take",
 )

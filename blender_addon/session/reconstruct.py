@@ -130,13 +130,14 @@ def reconstruct(
         progress=progress,
     )
     motion = solved.motion
+    quality = sparse_mocap.quality.quality_of(solved, database.motions)
     return Performance(
         name=take.name,
         motion=motion,
         contacts=np.asarray(solved.contacts),
         duration_s=(motion.num_frames - 1) * motion.frame_time_s,
-        match=sparse_mocap.report.match(solved),
-        is_guess=sparse_mocap.report.is_unlike_the_database(solved),
+        match=sparse_mocap.report.match(solved, database.motions),
+        is_guess=quality is not None and quality.is_unlike_the_database,
         spread_m=spread_of(solved),
         curves=sensor_curves(solved),
     )

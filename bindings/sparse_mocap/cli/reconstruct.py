@@ -22,9 +22,10 @@ from ..alignment import aligned
 from ..body_file import read_body
 from ..calibration import Calibration
 from ..calibration_file import read_calibration
+from ..quality import quality_of
 from ..reconstruction import reconstruct as reconstruct_take
 from ..reconstruction import with_locations
-from ..report import is_unlike_the_database, match, report, unit_warnings
+from ..report import match, report, unit_warnings
 from .console import progress_bar, warn, write_json
 from .options import (
     FilePath,
@@ -126,7 +127,7 @@ def reconstruct(
     if json_path is not None:
         write_json(json_path, _report(take, database, choice, offline, solved))
     warn([*_left_out(recorded, calibration), *unit_warnings(recorded)])
-    _print_summary(output, solved)
+    _print_summary(output, solved, database)
 
 
 def _read(path: Path, clap: tuple[float, float] | None) -> Take:
@@ -215,15 +216,24 @@ def _report(
     return about | report(solved, database)
 
 
-def _print_summary(output: Path, solved: Reconstruction) -> None:
+def _print_summary(output: Path, solved: Reconstruction, database: MotionDatabase | None) -> None:
     late = solved.latency_s
-    quality = "best quality" if late is None else f"live quality, {1000.0 * late:.0f} ms delay"
+    way = "best quality" if late is None else f"live quality, {1000.0 * late:.0f} ms delay"
     click.echo(
-        f"{output}: {solved.motion.num_frames} frames, {quality}; sensors match the motion "
-        f"database: {match(solved)}"
+        f"{output}: {solved.motion.num_frames} frames, {way}; sensors match the motion "
+        f"database: {match(solved, database)}"
     )
-    if is_unlike_the_database(solved):
-        click.echo(
-            "The motion database has nothing like this take, so the motion is a guess. Add motion "
-            "capture of similar movements, and check the locations and orientations of the sensors."
-        )
+    quality = quality_of(solved, database)
+    if quality is None or not quality.advice:
+        return
+    click.echo(f"{quality.advice[0].upper()}{quality.advice[1:]}.")
+    poor = [second for second, label in enumerate(quality.second_labels) if label == "poor"]
+    if poor and len(poor) < len(quality.second_labels):
+        click.echo(f"Poor are the seconds from {_listed(poor)} s.")
+
+
+def _listed(seconds: list[int]) -> str:
+    """Returns stretches of seconds: "0 to 3, 7 to 8"."""
+    begins = [s for s in seconds if s - 1 not in seconds]
+    ends = [s + 1 for s in seconds if s + 1 not in seconds]
+    return ", ".join(f"{begin} to {end}" for begin, end in zip(begins, ends, strict=True))

@@ -178,7 +178,7 @@ class _Run:
             np.asarray(motion.joint_positions("heading")),
             heading_rotations(motion),
             world_of(motion),
-            match(solved) if "sensor_misfit_mps2" in solved.diagnostics else None,
+            match(solved, self.database) if "sensor_misfit_mps2" in solved.diagnostics else None,
         )
 
     def _solved(
