@@ -203,6 +203,14 @@ def test_movement_is_a_mean_over_clips_beside_the_truth(found: dict) -> None:
         assert method["jumps"]["over_50_cm"] == sum(step > 50 for step in steps)
         ratios = [t["jerk_kmps3"][name] / t["jerk_kmps3"]["truth"] for t in found["tests"]]
         assert method["jerk_ratio"] == pytest.approx(np.mean(ratios))
+        walks = [t for t in found["tests"] if t["motion_class"] == "walk"]
+        of_walks = method["classes"]["walk"]
+        assert of_walks["tests"] == len(walks) > 0
+        sunk = [test["movement"][name]["under_floor"] for test in walks]
+        assert of_walks["movement"]["under_floor"] == pytest.approx(np.mean(sunk))
+        assert of_walks["largest_jerk_ratio"] == pytest.approx(
+            max(t["jerk_kmps3"][name] / t["jerk_kmps3"]["truth"] for t in walks)
+        )
 
 
 def test_warnings_are_right_where_a_held_pose_is_better() -> None:
@@ -220,7 +228,7 @@ def test_warnings_are_right_where_a_held_pose_is_better() -> None:
 
 
 def test_an_evaluation_is_told_drawn_and_kept(found: dict) -> None:
-    for word in ("oracle", "latency (ms)", "kickleft", "rwrist"):
+    for word in ("oracle", "latency (ms)", "kickleft", "rwrist", "sunk (%)", "warnings"):
         assert word in found["stdout"]
     pictures = sorted((found["folder"] / "plots").iterdir())
     assert [path.name for path in pictures] == [

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+import numpy as np
 from rich.table import Table
 
 from .. import MotionDatabase, _core, build_database, mapping_folder
@@ -27,6 +28,7 @@ from ..evaluation import (
     variants,
 )
 from ..evaluation import evaluate as run_evaluation
+from ..evaluation.movement import DRIFT_AFTER_S
 from ..files import remove_folder
 from ..methods import DEFAULT_METHOD, Experiment, method_info, methods, renamed_preset
 from .console import ProgressCallback, print_table, progress_bar, warn, write_json
@@ -94,7 +96,9 @@ def evaluate(
 
     Each clip is reconstructed from simulated sensors, without using the clip itself, its copies and
     the clips that the scenario excludes. Errors are the RMS over 21 joints in the heading frame,
-    averaged over each clip's frames.
+    averaged over each clip's frames. How methods move is beside the truth (in
+    brackets): jumps are clips with a step over 50 cm, and over three times the true ones; warnings
+    are poor matches, precision and recall, where the clip's mean pose is nearer.
     """
     names, presets = _renamed(names, presets)
     common = Settings(
@@ -230,6 +234,10 @@ def _show(title: str, found: Evaluation) -> None:
     for kind, errors in (("class", classes), ("joint", joints)):
         click.echo()
         print_table(_breakdown(kind, errors))
+    for method in found.methods:
+        if found.movement(method):
+            click.echo()
+            print_table(_moving(found, method))
 
 
 def _summary(found: Evaluation) -> Table:
@@ -256,3 +264,44 @@ def _breakdown(kind: str, errors: dict[str, dict[str, float]]) -> Table:
     for label in next(iter(errors.values())):
         table.add_row(label, *(f"{values[label]:.1f}" for values in errors.values()))
     return table
+
+
+def _moving(found: Evaluation, method: str) -> Table:
+    """Returns how a method moves over all tests and over each class's, see Movement."""
+    table = Table(method, box=None, pad_edge=False)
+    for name in (
+        "wrists (°)", "step (cm)", "jumps", "jerk ratio", "most", "feet (cm/s)", "sunk (%)",
+        *(f"{of} {s} s" for of in ("root", "heading") for s in DRIFT_AFTER_S), "warnings",
+    ):  # fmt: skip
+        table.add_column(name, justify="right")
+    parts = [("all", found), *((name, found.of_class(name)) for name in found.classes)]
+    for label, part in parts:
+        table.add_row(label, *_moving_row(part.moving(method)))
+    return table
+
+
+def _moving_row(told: dict[str, Any]) -> list[str]:
+    moved, truth, warned = told["movement"], told["truth_movement"], told["warnings"]
+
+    def shown(value: float | None, digits: int = 0) -> str:
+        return "" if value is None else f"{value:.{digits}f}"
+
+    def beside_truth(figure: str, digits: int) -> str:
+        return f"{shown(moved[figure], digits)} ({shown(truth[figure], digits)})"
+
+    wrists, true_wrists = (
+        np.mean([turns["turn_deg"][wrist] for wrist in ("lwrist", "rwrist")])
+        for turns in (moved, truth)
+    )
+    return [
+        f"{wrists:.1f} ({true_wrists:.1f})",
+        beside_truth("largest_step_cm", 0),
+        f"{told['jumps']['over_50_cm']} / {told['jumps']['over_3_true_steps']}",
+        shown(told["jerk_ratio"], 1),
+        shown(told["largest_jerk_ratio"], 1),
+        beside_truth("standing_cmps", 1),
+        shown(100.0 * moved["under_floor"], 1),
+        *(shown(moved[f"root_after_{s}_s_cm"]) for s in DRIFT_AFTER_S),
+        *(shown(moved[f"heading_after_{s}_s_deg"]) for s in DRIFT_AFTER_S),
+        " / ".join(shown(warned[of], 2) or "-" for of in ("precision", "recall")),
+    ]

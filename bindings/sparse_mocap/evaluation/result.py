@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -179,6 +179,28 @@ class Evaluation:
             "recall": right / int(is_worse.sum()) if is_worse.any() else None,
         }
 
+    @property
+    def classes(self) -> list[str]:
+        """The kinds of movement of the tests, sorted."""
+        return sorted({test.motion_class for test in self.tests})
+
+    def of_class(self, name: str) -> Evaluation:
+        """Returns the part that is about one kind of movement."""
+        return replace(self, tests=[test for test in self.tests if test.motion_class == name])
+
+    def moving(self, method: str) -> dict[str, Any]:
+        """Returns how a method moves, beside the truth, and how right its warnings are."""
+        ratios = self.jerk_ratios(method)
+        return {
+            "tests": len(self.tests),
+            "jerk_ratio": float(np.mean(ratios)),
+            "largest_jerk_ratio": float(np.max(ratios)),
+            "movement": self.movement(method),
+            "truth_movement": self.movement(None),
+            "jumps": self.jumps(method),
+            "warnings": self.warnings(method),
+        }
+
     def summary(self, method: str) -> dict[str, Any]:
         """Returns the figures of one method as JSON has them."""
         means, frames = self.clip_means_cm(method), self.frame_errors_cm(method)
@@ -197,6 +219,7 @@ class Evaluation:
             "jumps": self.jumps(method),
             "warnings": self.warnings(method),
             "class_errors_cm": self.class_errors_cm(method),
+            "classes": {name: self.of_class(name).moving(method) for name in self.classes},
             "joint_errors_cm": self.joint_errors_cm(method),
             "histogram": {"bin_cm": HISTOGRAM_BIN_CM, "frames": counts.tolist()},
         }
