@@ -236,7 +236,7 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
     fastest_foot_mps: FloatProperty(
         name="Fastest (m/s)",
         description="Feet that move faster are not locked (m/s)",
-        default=0.5,
+        default=0.7,
         min=0.0,
         max=3.0,
     )

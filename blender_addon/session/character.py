@@ -41,7 +41,7 @@ class FootLock:
     """0: not at all, 1: wholly."""
     least_certainty: float = 0.5
     """Of a foot that stands, 0 to 1."""
-    fastest_mps: float = 0.5
+    fastest_mps: float = 0.7
     """A faster foot does not stand."""
     highest_m: float = 0.06
     """A foot that is higher above the floor does not stand."""
