@@ -77,6 +77,10 @@ class Handle {
   const HANDLE value;
 };
 
+bool is_there(const fs::path& path) {
+  return GetFileAttributesW(path.c_str()) != INVALID_FILE_ATTRIBUTES;
+}
+
 bool rename(const fs::path& from, const fs::path& to, DWORD flags) {
   return MoveFileExW(from.c_str(), to.c_str(), flags | MOVEFILE_WRITE_THROUGH) != 0;
 }
@@ -140,7 +144,8 @@ void remove_unless_written(const fs::path& path) { DeleteFileW(path.c_str()); }
 std::shared_ptr<const void> try_lock(const fs::path& path) {
   fs::path beside = path;
   beside += L".lock";
-  const bool exists = GetFileAttributesW(path.c_str()) != INVALID_FILE_ATTRIBUTES;
+  // While a holder replaces the file, it is not there for a moment.
+  const bool exists = is_there(path) || is_there(beside);
   auto file = std::make_shared<const Handle>(
       exists ? CreateFileW(beside.c_str(), GENERIC_WRITE, 0, nullptr, OPEN_ALWAYS,
                            FILE_ATTRIBUTE_HIDDEN | FILE_FLAG_DELETE_ON_CLOSE, nullptr)

@@ -357,11 +357,13 @@ def test_the_report(tmp_path, monkeypatch):
     problem = import_problem(NO_CORE, host("3.12"), vendor / "sparse_mocap")
     lines = report(problem, vendor.parent, "ours", [vendor, tmp_path / "none"]).split("\n")
     assert lines[0] == f"Sparse Mocap 0.1.2 as ours in ~{os.sep}addons{os.sep}ours"
-    assert re.match(r"Python 3\.\d+\.\d+\S*, 64-bit, for Linux", lines[2])
+    place = re.escape(installation.this_host().target.place)
+    assert re.match(rf"Python 3\.\d+\.\d+\S*, 64-bit, for {place}$", lines[2])
     assert f"Reason: {problem.reason}" in lines
     assert any(line.startswith("Python said: ModuleNotFoundError: No module") for line in lines)
     looked_in = lines.index("Looked in:")
-    assert lines[looked_in + 1] == f"  ~/addons/ours/vendor/sparse_mocap: {LINUX.format(399)}"
-    assert lines[looked_in + 2].endswith("none/sparse_mocap: not there")
-    assert "  ~/pip/sparse_mocap: no compiled module" in lines
+    ours, pip = Path("~/addons/ours/vendor/sparse_mocap"), Path("~/pip/sparse_mocap")
+    assert lines[looked_in + 1] == f"  {ours}: {LINUX.format(399)}"
+    assert lines[looked_in + 2].endswith(f"{Path('none/sparse_mocap')}: not there")
+    assert f"  {pip}: no compiled module" in lines
     assert "erika" not in "\n".join(lines)

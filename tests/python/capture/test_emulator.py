@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 from pathlib import Path
 from typing import Any
@@ -180,10 +181,11 @@ def test_a_duplicate_id_is_one_sensor_that_speaks_twice() -> None:
     assert counters["repeated"] + counters["out_of_order"] > 50
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="needs pseudo-terminals")
 def test_a_cut_takes_the_port_away() -> None:
     emulator = Emulator(some_take(5.0), DRIVER, speed=FAST, faults=Faults(cut_after_s=1.0))
     (path,) = emulator.plug_in()
-    with serial.serial_for_url(path, timeout=0.02) as port:
+    with serial.Serial(path, timeout=0.02) as port:
         thread = threading.Thread(target=emulator.run)
         thread.start()
         until(lambda: is_gone(port))
