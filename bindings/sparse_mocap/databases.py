@@ -7,7 +7,10 @@ poor reconstructions look like (see quality).
 
 from __future__ import annotations
 
+import functools
+import hashlib
 import os
+import threading
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -21,7 +24,7 @@ if TYPE_CHECKING:
 
     from ._core_database import _ImportOptions
 
-__all__ = ["add_to_database", "build_database"]
+__all__ = ["add_to_database", "build_database", "content_hash", "shared_database"]
 
 Path = str | os.PathLike[str]
 
@@ -104,3 +107,34 @@ def add_to_database(
     )
     calibrate_quality(database if output is None else output)
     return report
+
+
+def content_hash(database: Path) -> str:
+    """Returns what tells a database's content from any other: the hash of the file's header.
+
+    The header holds the checksums of all arrays, which opening the database compares.
+    """
+    with open(database, "rb") as file:
+        size = int.from_bytes(file.read(8), "little")
+        header = file.read(min(size, _MOST_HEADER_BYTES))
+    return hashlib.sha256(header).hexdigest()
+
+
+def shared_database(path: str, expected_hash: str | None = None) -> _core.MotionDatabase:
+    """Returns the database, opened once in each process.
+
+    Raises ConfigError if its content is another one than the hash says.
+    """
+    with _opening:
+        return _opened(path, expected_hash)
+
+
+_MOST_HEADER_BYTES = 1 << 30
+_opening = threading.Lock()
+
+
+@functools.lru_cache(maxsize=1)
+def _opened(path: str, expected_hash: str | None) -> _core.MotionDatabase:
+    if expected_hash is not None and content_hash(path) != expected_hash:
+        raise _core.ConfigError(f"{path}: is another database than the one the work began with")
+    return _core.MotionDatabase(path)

@@ -32,6 +32,7 @@ COMMANDS = (
     ("convert",),
     ("simulate",),
     ("reconstruct",),
+    ("batch",),
     ("evaluate",),
     ("inspect",),
     ("ports",),

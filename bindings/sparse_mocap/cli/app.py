@@ -16,6 +16,7 @@ from .faults import Fault, as_faults
 __all__ = ["app", "run"]
 
 _COMMANDS = {
+    "batch": ".batch:batch",
     "body": ".body:body",
     "calibrate": ".calibrate:calibrate_command",
     "convert": ".convert:convert",

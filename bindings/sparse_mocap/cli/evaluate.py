@@ -8,7 +8,7 @@ import hashlib
 import json
 import tempfile
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -31,8 +31,18 @@ from ..evaluation import evaluate as run_evaluation
 from ..evaluation.movement import DRIFT_AFTER_S
 from ..files import remove_folder
 from ..methods import DEFAULT_METHOD, Experiment, method_info, methods, renamed_preset
+from ..workers import cluster
 from .console import ProgressCallback, print_table, progress_bar, warn, write_json
-from .options import PAPER_SITES, FilePath, OutputPath, Sites, noise_option, seed_option, set_option
+from .options import (
+    PAPER_SITES,
+    FilePath,
+    OutputPath,
+    Sites,
+    noise_option,
+    scheduler_option,
+    seed_option,
+    set_option,
+)
 
 __all__ = ["evaluate"]
 
@@ -74,6 +84,7 @@ __all__ = ["evaluate"]
 @click.option(
     "--cache", type=FilePath, help="Folder to save the database in, for the next evaluation."
 )
+@scheduler_option
 def evaluate(
     source: Path,
     scenario: int,
@@ -91,6 +102,7 @@ def evaluate(
     noise: str,
     seed: int,
     cache: Path | None,
+    scheduler: str | None,
 ) -> None:
     """Measures errors on held-out clips.
 
@@ -100,29 +112,49 @@ def evaluate(
     brackets): jumps are clips with a step over 50 cm, and over three times the true ones; warnings
     are poor matches, precision and recall, where the clip's mean pose is nearer.
     """
+    if scheduler is not None and cache is None:
+        raise click.UsageError("Missing option '--cache': workers find the database there.")
     names, presets = _renamed(names, presets)
     common = Settings(
         scenario, tests=tests, sites=sites, noise=noise, seed=seed, with_gyroscopes=gyroscopes
     )
-    runs: list[tuple[str, Settings]] = []
     if paper or experiments:
-        for method, experiment in _experiments(names, experiments):
-            chosen = tuple(variants(method, experiment))
-            runs.append(
-                (
-                    f"{method}: {experiment.help}",
-                    replace(common, contenders=chosen, pairs=experiment.pairs),
-                )
-            )
+        runs = _comparisons(names, experiments, common)
     else:
         chosen = _contenders(names, presets, settings, offline)
-        runs.append(("", replace(common, contenders=chosen)))
-    with progress_bar("Evaluating") as progress, _database(source, cache, progress) as database:
-        found = [(title, run_evaluation(database, source, run, progress)) for title, run in runs]
+        runs = [("", replace(common, contenders=chosen))]
+    found = _evaluated(source, runs, cache, scheduler)
     _write(found, json_path, plots)
     for title, evaluation in found:
         warn([f"not tested: {line}" for line in evaluation.left_out])
         _show(title, evaluation)
+
+
+def _evaluated(
+    source: Path, runs: Sequence[tuple[str, Settings]], cache: Path | None, scheduler: str | None
+) -> list[tuple[str, Evaluation]]:
+    executor = nullcontext() if scheduler is None else cluster(scheduler)
+    with (
+        progress_bar("Evaluating") as progress,
+        _database(source, cache, progress) as database,
+        executor as workers,
+    ):
+        return [
+            (title, run_evaluation(database, source, run, progress, workers)) for title, run in runs
+        ]
+
+
+def _comparisons(
+    names: Sequence[str], experiments: Sequence[str], common: Settings
+) -> list[tuple[str, Settings]]:
+    """Returns the comparisons from the methods' papers, each with its title."""
+    return [
+        (
+            f"{method}: {experiment.help}",
+            replace(common, contenders=tuple(variants(method, experiment)), pairs=experiment.pairs),
+        )
+        for method, experiment in _experiments(names, experiments)
+    ]
 
 
 def _renamed(
@@ -192,7 +224,7 @@ def _database(
         path = Path(temporary) / "evaluation.smdb"
         if cache is not None:
             cache.mkdir(parents=True, exist_ok=True)
-            path = cache / f"evaluation_{_fingerprint(source)}.smdb"
+            path = cache.absolute() / f"evaluation_{_fingerprint(source)}.smdb"
         if not path.exists():
             build_database(
                 [source], path, mirror=True, mappings=mapping_folder(), progress=progress

@@ -244,6 +244,12 @@ body_option: Decorator = click.option(
     help="The performer's body, for methods that need one; see `body`.",
 )  # fmt: skip
 
+scheduler_option: Decorator = click.option(
+    "--scheduler", metavar="ADDRESS",
+    help="A Dask scheduler whose workers do the work, as in tcp://10.0.0.1:8786. Files must be on a"
+    " disk that all of them share.",
+)  # fmt: skip
+
 
 @dataclass(frozen=True)
 class MethodChoice:

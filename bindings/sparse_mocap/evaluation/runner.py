@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from .. import (
     nearest_windows,
     playback_best_path,
 )
+from ..databases import content_hash, shared_database
 from ..readings import all_readings, channels_in
 from ..reconstruction import reconstruct
 from ..report import match
@@ -32,7 +34,7 @@ from .performance import PAPER_SITES, Performance, heading_rotations, performed
 from .protocol import choose_tests, excluded_clips, motion_files, source_path
 from .result import Evaluation, TestClip
 
-__all__ = ["Settings", "evaluate"]
+__all__ = ["Settings", "evaluate", "tested_clip"]
 
 Floats = NDArray[np.float64]
 Progress = Callable[[int, int, str], bool | None]
@@ -69,14 +71,24 @@ def evaluate(
     source: Path,
     settings: Settings = Settings(),
     progress: Progress | None = None,
+    executor: Executor | None = None,
 ) -> Evaluation:
     """Returns how well performances of the database's own files are reconstructed.
 
     What comes from the performed file is hidden from the database, and what the scenario says.
     ``source`` is the folder that the database was built from. ``progress`` cancels the evaluation
-    by returning False, which raises Cancelled.
+    by returning False, which raises Cancelled. ``executor`` (see workers) tests the clips; both
+    paths must mean the same there.
     """
-    return _Run(database, source, settings, progress).run()
+    return _Run(database, source, settings, progress).run(executor)
+
+
+def tested_clip(
+    database: str, database_hash: str, source: str, settings: Settings, test: int, hidden: list[int]
+) -> tuple[TestClip | None, dict[str, float | None], str]:
+    """Returns how the test of one clip went and each method's latency (ms), or why it did not."""
+    run = _Run(shared_database(database, database_hash), Path(source), settings, None)
+    return run.tested(test, hidden)
 
 
 class _Run:
@@ -88,6 +100,7 @@ class _Run:
         progress: Progress | None,
     ) -> None:
         self.database, self.settings, self.progress = database, settings, progress
+        self.source = source
         self.contenders = settings.contenders or tuple(contenders(("path_regression",)))
         self.clips: list[Clip] = database.clips
         self.files = motion_files(source)
@@ -101,20 +114,49 @@ class _Run:
             {},
         )
 
-    def run(self) -> Evaluation:
+    def run(self, executor: Executor | None) -> Evaluation:
         tests = self._tests()
         if not tests:
             raise self._nothing_to_test(f"no clip matches {self.settings.tests!r}")
-        for done, (test, excluded) in enumerate(tests):
-            self._report(done, len(tests), self.clips[test].name)
-            try:
-                self._test(test, excluded)
-            except (FormatError, MappingError) as error:
-                self.evaluation.left_out.append(f"{self.clips[test].name}: {error}")
+        for test, latencies_ms, problem in self._each_tested(tests, executor):
+            if test is None:
+                self.evaluation.left_out.append(problem)
+                continue
+            self.evaluation.tests.append(test)
+            self.evaluation.latencies_ms |= latencies_ms
         self._report(len(tests), len(tests), "")
         if not self.evaluation.tests:
             raise self._nothing_to_test(self.evaluation.left_out[0])
         return self.evaluation
+
+    def _each_tested(
+        self, tests: list[tuple[int, list[int]]], executor: Executor | None
+    ) -> Iterator[tuple[TestClip | None, dict[str, float | None], str]]:
+        if executor is None:
+            for done, (test, excluded) in enumerate(tests):
+                self._report(done, len(tests), self.clips[test].name)
+                yield self.tested(test, excluded)
+            return
+        path = self.database.path
+        about = (path, content_hash(path), str(self.source.absolute()))
+        pending = [executor.submit(tested_clip, *about, self.settings, *test) for test in tests]
+        try:
+            for done, future in enumerate(pending):
+                self._report(done, len(tests), self.clips[tests[done][0]].name)
+                yield future.result()
+        finally:
+            for future in pending:
+                future.cancel()
+
+    def tested(
+        self, test: int, excluded: list[int]
+    ) -> tuple[TestClip | None, dict[str, float | None], str]:
+        """Returns the test of one clip and each method's latency (ms), or why there is none."""
+        self.latencies_ms: dict[str, float | None] = {}
+        try:
+            return self._test(test, excluded), self.latencies_ms, ""
+        except (FormatError, MappingError) as error:
+            return None, {}, f"{self.clips[test].name}: {error}"
 
     def _tests(self) -> list[tuple[int, list[int]]]:
         """Returns the clips to test, and for each those that the database must not have then."""
@@ -140,7 +182,7 @@ class _Run:
         if self.progress is not None and self.progress(done, total, what) is False:
             raise Cancelled("cancelled")
 
-    def _test(self, index: int, excluded: list[int]) -> None:
+    def _test(self, index: int, excluded: list[int]) -> TestClip:
         clip = self.clips[index]
         if len(excluded) == len(self.clips):
             raise TableError(clip.source, 0, "is all that the scenario's database would hold")
@@ -163,14 +205,14 @@ class _Run:
         estimates = [self._estimate(one, performance, excluded) for one in self.contenders]
         for estimate in estimates + self._baselines(performance, truth.positions, excluded):
             test.results[estimate.label] = truth.compared(estimate)
-        self.evaluation.tests.append(test)
+        return test
 
     def _estimate(
         self, contender: Contender, performance: Performance, excluded: Sequence[int]
     ) -> Estimate:
         solved = self._solved(contender, performance, excluded)
         late = solved.latency_s
-        self.evaluation.latencies_ms[contender.label] = None if late is None else 1000.0 * late
+        self.latencies_ms[contender.label] = None if late is None else 1000.0 * late
         motion = solved.motion
         return Estimate(
             contender.label,
@@ -217,5 +259,5 @@ class _Run:
         ]
         mean_pose = np.broadcast_to(truth.mean(axis=0), truth.shape)
         found.append(Estimate("mean pose", truth_times, mean_pose))
-        self.evaluation.latencies_ms |= dict.fromkeys(BASELINES)
+        self.latencies_ms |= dict.fromkeys(BASELINES)
         return found
