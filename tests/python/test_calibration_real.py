@@ -120,6 +120,25 @@ def since(take: Take, begin_s: float) -> Take:
     return Take(sensors)
 
 
+def exceeds_human_limits(motion: Motion) -> list[str]:
+    """Joints that turn by over 56 degrees within a frame, or bend as no knee or elbow does."""
+    names = list(motion.skeleton.names)
+    quaternions = np.asarray(motion.rotations)
+    found = []
+    for joint, name in enumerate(names):
+        turned = Rotation.from_quat(quaternions[:, joint][:, [1, 2, 3, 0]])
+        if np.degrees((turned[:-1].inv() * turned[1:]).magnitude()).max() > 56.1:
+            found.append(f"{name} turns too fast")
+        if name[1:] not in ("tibia", "radius"):
+            continue
+        vectors = np.degrees(turned.as_rotvec())
+        farthest = vectors[np.argmax(np.linalg.norm(vectors, axis=1))]
+        bend = vectors @ farthest / np.linalg.norm(farthest)
+        if bend.min() < -10.1 or bend.max() > 170.1:
+            found.append(f"{name} bends from {bend.min():.0f} to {bend.max():.0f} degrees")
+    return found
+
+
 def test_limbs_point_where_the_reference_says(
     recorded: Any,
     real_data: Path,
@@ -142,6 +161,7 @@ def test_limbs_point_where_the_reference_says(
             calibration=calibration,
             use_gyroscopes=uses_gyroscopes,
         )
+        assert exceeds_human_limits(solved.motion) == []
         times = np.asarray(solved.readings.times_s)
         scored = times >= SCORED[0]
         truth = limbs[np.round(times[scored] * 100).astype(int)]
