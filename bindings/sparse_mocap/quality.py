@@ -32,7 +32,7 @@ SITES = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
 # Of 404 reconstructions of HDM05 and CMU clips, see calibrate_quality(): the logarithm of the error
 # as a part of the mean pose's, by _measures().
 _USUAL = (1.27, 0.69, 1.14, -1.09, -0.34, 0.35)
-_BEST_QUALITY = -0.14  # what it is in best quality beside that
+_BEST_QUALITY = -0.07  # what it is in best quality beside that
 _TYPICAL_SPREAD_M, _TYPICAL_MISFIT_MPS2 = 0.06, 2.6
 
 _UNLIKE_ADVICE = (
@@ -44,7 +44,7 @@ _ALIKE_ADVICE = (
     "gyroscopes, or clips of this performer help"
 )
 
-_FAIR_FROM = 0.65  # of the mean pose's error
+_FAIR_FROM, _POOR_FROM = 0.65, 0.95  # of the mean pose's error: as many warnings as are due
 _SECONDS_AROUND_S = 1.0  # a second is judged with what is so near to its middle
 _HOP_FRAMES = 3  # a retrieved movement that goes on moves less in the database from frame to frame
 
@@ -214,7 +214,7 @@ def _share(evidence: _Evidence, calibration: _Calibration, offset: float) -> flo
 
 
 def _label(share: float) -> str:
-    if share > 1.0:
+    if share > _POOR_FROM:
         return "poor"
     return "good" if share < _FAIR_FROM else "fair"
 

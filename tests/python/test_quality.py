@@ -64,10 +64,10 @@ def test_the_expected_error_has_its_closed_form() -> None:
         assert found is not None
         share = expected(spread_m, misfit_mps2)
         assert found.share == pytest.approx(share, rel=1e-9)
-        assert found.label == ("poor" if share > 1.0 else "fair" if share >= 0.65 else "good")
+        assert found.label == ("poor" if share > 0.95 else "fair" if share >= 0.65 else "good")
         best = quality_of(told([spread_m] * 30, [misfit_mps2] * 30, best=True))
         assert best is not None
-        assert best.share == pytest.approx(share * exp(-0.14), rel=1e-9)
+        assert best.share == pytest.approx(share * exp(-0.07), rel=1e-9)
 
 
 def test_each_second_is_judged_by_what_is_near() -> None:
