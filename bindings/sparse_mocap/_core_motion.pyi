@@ -31,6 +31,12 @@ class Skeleton:
     @property
     def bones(self) -> Floats:
         """(J, 3) m, from pivot to end, in the joint's frame (the world's in rest pose)."""
+    def angles(self, rotations: ArrayLike, reference: ArrayLike | None = None) -> Floats:
+        """Returns the angles (T, A) rad that turn the joints by rotations (T, J, 4) w x y z.
+
+        Of angles that mean the same rotation these are the nearest to reference (T, A), by default
+        0. Raises ValueError for other shapes.
+        """
 
 class Motion:
     """What a skeleton does, sampled evenly."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -61,8 +61,8 @@ class Experiment:
 
     name: str
     help: str
-    variants: tuple[tuple[str, dict[str, str]], ...]
-    """Labels and options."""
+    variants: tuple[tuple[str, dict[str, str], dict[str, list[str]]], ...]
+    """Labels, options, and the sensors by site with the channels they give; none: any."""
     pairs: tuple[tuple[str, str], ...]
     """Patterns on the names of training and test clips; none: the evaluation's scenario."""
     error: str
@@ -85,11 +85,20 @@ class MethodInfo:
     """Of "database", "model" and "body"."""
     required_channels: tuple[str, ...]
     optional_channels: tuple[str, ...]
+    one_channel_of: tuple[str, ...]
+    """Every sensor gives at least one of these; empty: that is not asked for."""
     fewest_sensors: int
     most_sensors: int
     works_live: bool
     works_on_whole_takes: bool
     experiments: tuple[Experiment, ...]
+
+    def can_use(self, channels: Collection[str]) -> bool:
+        """Whether sensors that give these channels are enough."""
+        asked = self.one_channel_of
+        return set(self.required_channels) <= set(channels) and (
+            not asked or not set(asked).isdisjoint(channels)
+        )
 
 
 @cache
@@ -149,6 +158,7 @@ def _method(told: dict[str, Any]) -> MethodInfo:
         needs=tuple(told["needs"]),
         required_channels=tuple(told["channels"]["required"]),
         optional_channels=tuple(told["channels"]["optional"]),
+        one_channel_of=tuple(told["channels"]["one_of"]),
         fewest_sensors=told["sensors"]["fewest"],
         most_sensors=told["sensors"]["most"],
         works_live=told["works_live"],

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import GRAVITY_MPS2
-from .rotations import about_axis, product
+from .rotations import about_axis, from_rotation_vectors, product
 from .take import SensorRecord, Take
 
 __all__ = ["NoiseModel", "noise_presets", "noisy"]
@@ -36,6 +36,16 @@ class NoiseModel:
     """Rotation of each sensor on the body, about a random axis."""
     latency_s: float = 0.0
     """Delay of the samples."""
+    position_m: float = 0.0
+    """Standard deviation of each axis of a position, white."""
+    position_outliers: float = 0.0
+    """Share of the positions that are wrong."""
+    outlier_m: float = 0.0
+    """Standard deviation of each axis of a wrong position's error."""
+    orientation_rad: float = 0.0
+    """Standard deviation of an orientation about each axis, white."""
+    heading_drift_radps: float = 0.0
+    """rad/s, standard deviation of the constant rate at which each orientation turns about up."""
 
 
 _MILLI_G = 1e-3 * GRAVITY_MPS2
@@ -60,11 +70,33 @@ _PRESETS = {
         misalignment_rad=radians(5.0),
         latency_s=0.020,
     ),
+    "optical": NoiseModel(position_m=0.002, orientation_rad=radians(0.3)),
+    "ultrasonic": NoiseModel(
+        position_m=0.01,
+        position_outliers=0.02,
+        outlier_m=0.2,
+        orientation_rad=radians(0.5),
+    ),
+    "inertial": NoiseModel(
+        accelerometer_density=0.2 * _MILLI_G,
+        accelerometer_bias=10 * _MILLI_G,
+        gyroscope_density=radians(0.01),
+        gyroscope_bias=radians(0.2),
+        scale_error=0.005,
+        misalignment_rad=radians(2.0),
+        orientation_rad=radians(0.5),
+        heading_drift_radps=radians(0.1),
+    ),
 }
 
 
 def noise_presets() -> dict[str, NoiseModel]:
-    """Returns the named models: none, research (calibrated, strapped well) and consumer."""
+    """Returns the named models.
+
+    For accelerometers and gyroscopes: none, research (calibrated, strapped well) and consumer. For
+    trackers: optical, ultrasonic (as Liu et al. 2011 use: noisier, with wrong positions among the
+    right ones) and inertial (orientations whose heading drifts, and no use for positions).
+    """
     return dict(_PRESETS)
 
 
@@ -100,8 +132,25 @@ def _noisy_record(
     orientation = record.orientation
     if orientation is not None:
         orientation = product(orientation, about_axis(axis, model.misalignment_rad))
+        orientation = _noisy_orientation(orientation, record.times_s, model, rng)
+    position = record.position
+    if position is not None:
+        is_wrong = rng.random((len(position), 1)) < model.position_outliers
+        deviation = np.where(is_wrong, model.outlier_m, model.position_m)
+        position = position + deviation * rng.normal(size=position.shape)
     times_s = record.times_s + model.latency_s
-    return SensorRecord(times_s, force, rates, orientation, record.position)
+    return SensorRecord(times_s, force, rates, orientation, position)
+
+
+def _noisy_orientation(
+    orientation: Floats, times_s: Floats, model: NoiseModel, rng: np.random.Generator
+) -> Floats:
+    """Returns orientations whose heading drifts from the first one's on."""
+    turned = np.zeros((len(times_s), 3))
+    turned[:, 1] = model.heading_drift_radps * rng.normal() * (times_s - times_s[0])
+    drifted = product(from_rotation_vectors(turned), orientation)
+    wobble = model.orientation_rad * rng.normal(size=turned.shape)
+    return product(drifted, from_rotation_vectors(wobble))
 
 
 def _rotation(axis: Floats, angle: float) -> Floats:

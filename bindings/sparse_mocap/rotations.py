@@ -12,6 +12,7 @@ Floats = NDArray[np.float64]
 
 __all__ = [
     "about_axis",
+    "from_rotation_vectors",
     "from_z_up",
     "interpolated",
     "inverse",
@@ -36,6 +37,12 @@ def inverse(rotations: Floats) -> Floats:
 def about_axis(axis: ArrayLike, angle_rad: float) -> Floats:
     """Returns the rotation (4,) about a unit vector."""
     return np.concatenate([[np.cos(angle_rad / 2)], np.sin(angle_rad / 2) * np.asarray(axis)])
+
+
+def from_rotation_vectors(vectors_rad: Floats) -> Floats:
+    """Returns the rotations (T, 4) by rotation vectors (T, 3)."""
+    half = 0.5 * np.linalg.norm(vectors_rad, axis=1, keepdims=True)
+    return np.concatenate([np.cos(half), 0.5 * np.sinc(half / np.pi) * vectors_rad], axis=1)
 
 
 def from_z_up(rotations: ArrayLike) -> Floats:

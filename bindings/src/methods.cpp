@@ -6,6 +6,7 @@
 #include "sparse_mocap/methods/reconstruct.hpp"
 #include "sparse_mocap/methods/registry.hpp"
 #include "sparse_mocap/readings/channel_names.hpp"
+#include "sparse_mocap/sensors/sites.hpp"
 
 namespace sparse_mocap::python {
 namespace {
@@ -45,7 +46,11 @@ py::dict experiment_dict(const Experiment& experiment) {
   for (const auto& variant : experiment.variants) {
     py::dict options;
     for (const auto& [name, value] : variant.options) options[name.c_str()] = value;
-    variants.append(py::make_tuple(variant.label, options));
+    py::dict sensors;
+    for (const Sensor& sensor : variant.sensors)
+      sensors[py::str(std::string(all_sites()[static_cast<std::size_t>(sensor.site)].name))] =
+          names_of(sensor.channels);
+    variants.append(py::make_tuple(variant.label, options, sensors));
   }
   for (const auto& pair : experiment.pairs) pairs.append(py::make_tuple(pair.training, pair.test));
   py::dict out;
@@ -74,6 +79,7 @@ py::dict method_dict(const MethodEntry& method) {
   py::dict channels, sensors, out;
   channels["required"] = names_of(info.required_channels);
   channels["optional"] = names_of(info.optional_channels);
+  channels["one_of"] = names_of(info.one_channel_of);
   sensors["fewest"] = info.fewest_sensors;
   sensors["most"] = info.most_sensors;
   out["name"] = info.name;

@@ -41,6 +41,25 @@ py::array_t<double> rotations(const Motion& motion) {
   return out;
 }
 
+py::array_t<double> angles_of(const Skeleton& skeleton, const Doubles& joint_rotations,
+                              const std::optional<Doubles>& reference) {
+  require_shape(joint_rotations, {-1, skeleton.num_joints(), 4}, "rotations");
+  const py::ssize_t frames = joint_rotations.shape(0);
+  if (reference) require_shape(*reference, {frames, skeleton.num_angles()}, "reference");
+  auto out = new_array({frames, skeleton.num_angles()});
+  const double* q = joint_rotations.data();
+  for (py::ssize_t t = 0; t < frames; ++t) {
+    double* angles = out.mutable_data(t, 0);
+    const double* near = reference ? reference->data(t, 0) : nullptr;
+    for (int j = 0; j < skeleton.num_joints(); ++j, q += 4) {
+      const int begin = skeleton.angle_begin(j);
+      joint_angles(skeleton.joint(j), Quat(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix(),
+                   near == nullptr ? nullptr : near + begin, angles + begin);
+    }
+  }
+  return out;
+}
+
 // The joints that the file moves besides the root, and where to.
 std::vector<std::pair<int, py::array_t<double>>> offset_tracks(const Motion& motion) {
   std::vector<std::pair<int, py::array_t<double>>> tracks;
@@ -212,7 +231,12 @@ when they are not, or a name is repeated.)doc")
           "(J, 3) m, from the parent's end to the pivot, in the parent's frame.")
       .def_property_readonly(
           "bones", [](const Skeleton& s) { return vectors(s, &Joint::bone); },
-          "(J, 3) m, from pivot to end, in the joint's frame (the world's in rest pose).");
+          "(J, 3) m, from pivot to end, in the joint's frame (the world's in rest pose).")
+      .def("angles", &angles_of, py::arg("rotations"), py::arg("reference") = py::none(),
+           R"doc(Returns the angles (T, A) rad that turn the joints by rotations (T, J, 4) w x y z.
+
+Of angles that mean the same rotation these are the nearest to reference (T, A), by default
+0. Raises ValueError for other shapes.)doc");
 }
 
 void bind_motion_class(py::module_& m) {

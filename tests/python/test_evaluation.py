@@ -32,6 +32,7 @@ from sparse_mocap.evaluation import (
     motion_files,
     source_path,
 )
+from sparse_mocap.evaluation.metrics import euler_errors_deg
 
 Cli = Callable[..., Result]
 
@@ -103,6 +104,21 @@ def test_angle_errors_are_the_angles_between_rotations() -> None:
     turned = np.array([[[np.cos(half), np.sin(half), 0, 0], [-1.0, 0, 0, 0]]])
     still = np.array([[[1.0, 0, 0, 0], [1.0, 0, 0, 0]]])
     np.testing.assert_allclose(joint_angle_errors_deg(still, turned), [[30.0, 0.0]], atol=1e-6)
+
+
+def test_euler_errors_are_means_of_the_shorter_turns() -> None:
+    truth = np.radians([[0.0, 179.0], [10.0, 20.0]])
+    estimate = np.radians([[2.0, -179.0], [4.0, 20.0]])
+    np.testing.assert_allclose(euler_errors_deg(truth, estimate), [2.0, 3.0])
+
+
+def test_angles_turn_joints_as_rotations_do(database: MotionDatabase) -> None:
+    angles = np.asarray(database.array("angles")[:20], float)
+    skeleton, motion = database.skeleton, database.clip_motion(0)
+    found = skeleton.angles(motion.rotations[:20], angles)
+    np.testing.assert_allclose(found[:, 3:], angles[:, 3:], atol=1e-3)  # the root has a heading
+    with pytest.raises(ValueError, match="rotations"):
+        skeleton.angles(motion.rotations[:, :5])
 
 
 def test_jerk_is_the_third_derivative() -> None:
@@ -332,6 +348,38 @@ def test_a_papers_comparison_is_run_variant_by_variant(
     assert [name in told["methods"] for name in variants] == [True, True]
     means = [told["methods"][name]["mean_cm"] for name in variants]
     assert means[0] != means[1]
+
+
+def test_trackers_are_compared_with_their_own_channels(
+    library: Path, tmp_path: Path, cli: Cli
+) -> None:
+    result = cli(
+        "evaluate", "--database-source", library, "--scenario", 1, "--experiment", "combinations",
+        "--method", "liu2011", "--tests", "ada_walk_01.bvh", "--fps", 40,
+        "--json", tmp_path / "e.json",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    told = json.loads((tmp_path / "e.json").read_text(encoding="utf-8"))
+    assert told["settings"]["rate_hz"] == 40.0
+    angles = {name: method["euler_angle_deg"] for name, method in told["methods"].items()}
+    assert angles["positions and orientations"] < angles["positions"]
+    (frames,) = [test["euler_angle_deg"]["positions"] for test in told["tests"]]
+    assert np.mean(frames) == pytest.approx(angles["positions"], abs=1e-3)
+
+
+def test_only_methods_that_can_use_the_channels_are_evaluated(
+    library: Path, tmp_path: Path, cli: Cli
+) -> None:
+    result = cli(
+        "evaluate", "--database-source", library, "--scenario", 1, "--channels", "orientation",
+        "--tests", "ada_walk_01.bvh", "--json", tmp_path / "e.json",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    told = json.loads((tmp_path / "e.json").read_text(encoding="utf-8"))
+    assert [name for name in told["methods"] if name not in BASELINES] == ["liu2011 default"]
+    wrong = cli("evaluate", "--database-source", library, "--scenario", 1, "--channels", "smell")
+    assert wrong.exit_code == 2
+    assert "'smell' is none of specific_force" in wrong.output
 
 
 def test_training_and_test_clips_can_be_paired(database: MotionDatabase, library: Path) -> None:

@@ -45,6 +45,40 @@ def test_consumer_is_as_noisy_turned_and_late_as_agreed() -> None:
     assert angle == pytest.approx(5.0)
 
 
+def tracked(num_samples: int = 20_000) -> SensorRecord:
+    times = np.arange(num_samples) / 40
+    turns = np.tile([1.0, 0.0, 0.0, 0.0], (num_samples, 1))
+    places = np.tile([1.0, 2.0, 3.0], (num_samples, 1))
+    return SensorRecord(times, np.zeros((num_samples, 3)), None, turns, places)
+
+
+def test_trackers_are_as_noisy_as_agreed() -> None:
+    take = Take({"head": tracked()})
+    optical = noisy(take, noise_presets()["optical"], 1).sensors["head"]
+    assert optical.position is not None
+    assert optical.orientation is not None
+    np.testing.assert_allclose(optical.position.std(axis=0), 0.002, rtol=0.03)
+    np.testing.assert_allclose(optical.position.mean(axis=0), [1, 2, 3], atol=1e-4)
+    turns = 2 * np.degrees(optical.orientation[:, 1:]).std(axis=0)
+    np.testing.assert_allclose(turns, 0.3, rtol=0.03)
+    ultrasonic = noisy(take, noise_presets()["ultrasonic"], 1).sensors["head"]
+    assert ultrasonic.position is not None
+    away = np.linalg.norm(ultrasonic.position - [1, 2, 3], axis=1)
+    assert np.median(away) == pytest.approx(0.0154, rel=0.05)  # of three axes with 1 cm each
+    assert np.mean(away > 0.1) == pytest.approx(0.018, abs=0.004)  # most wrong ones
+
+
+def test_headings_drift_evenly_about_up() -> None:
+    record = noisy(Take({"head": tracked(401)}), NoiseModel(heading_drift_radps=0.01), 2).sensors[
+        "head"
+    ]
+    assert record.orientation is not None
+    yaw = 2 * np.arcsin(record.orientation[:, 2])
+    assert abs(yaw[-1]) > 1e-3
+    np.testing.assert_allclose(yaw, yaw[-1] * np.linspace(0, 1, 401), atol=1e-12)
+    np.testing.assert_allclose(record.orientation[:, [1, 3]], 0.0, atol=1e-12)
+
+
 def test_a_turned_sensor_reads_the_same_vector_in_its_own_axes() -> None:
     record = noisy(take_of(5), NoiseModel(misalignment_rad=0.3), 4).sensors["head"]
     assert record.orientation is not None

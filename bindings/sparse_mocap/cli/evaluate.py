@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import atexit
+import functools
 import hashlib
 import json
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -38,6 +39,7 @@ from .options import (
     FilePath,
     OutputPath,
     Sites,
+    channels_option,
     noise_option,
     scheduler_option,
     seed_option,
@@ -45,6 +47,34 @@ from .options import (
 )
 
 __all__ = ["evaluate"]
+
+DEFAULT_FPS = 25.0
+
+
+def _simulation_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """What the sensors give, and how well; the command gets it as ``simulation``, for Settings."""
+
+    @functools.wraps(command)
+    def with_simulation(
+        *args: Any,
+        sites: tuple[str, ...],
+        noise: str,
+        seed: int,
+        channels: tuple[str, ...],
+        gyroscopes: bool,
+        **options: Any,
+    ) -> Any:
+        simulation = {"sites": sites, "noise": noise, "seed": seed, "channels": channels}
+        simulation["with_gyroscopes"] = gyroscopes
+        return command(*args, simulation=simulation, **options)
+
+    sites = click.option("--sites", type=Sites(), default=PAPER_SITES, help="Sensor locations.")
+    gyroscopes = click.option(
+        "--gyroscopes", is_flag=True, help="Also simulate gyroscopes, and use them."
+    )
+    for option in (seed_option, noise_option, sites, channels_option, gyroscopes):
+        with_simulation = option(with_simulation)
+    return with_simulation
 
 
 @click.command()
@@ -77,10 +107,11 @@ __all__ = ["evaluate"]
 @click.option(
     "--offline", is_flag=True, help="Also evaluate best quality, for methods that have it."
 )
-@click.option("--gyroscopes", is_flag=True, help="Also simulate gyroscopes, and use them.")
-@click.option("--sites", type=Sites(), default=PAPER_SITES, help="Sensor locations.")
-@noise_option
-@seed_option
+@_simulation_options
+@click.option(
+    "--fps", type=click.FloatRange(1.0, 1000.0), default=DEFAULT_FPS, show_default=True,
+    help="Frames per second of the database, and so of what is reconstructed.",
+)  # fmt: skip
 @click.option(
     "--cache", type=FilePath, help="Folder to save the database in, for the next evaluation."
 )
@@ -97,12 +128,10 @@ def evaluate(
     experiments: tuple[str, ...],
     paper: bool,
     offline: bool,
-    gyroscopes: bool,
-    sites: tuple[str, ...],
-    noise: str,
-    seed: int,
+    simulation: dict[str, Any],
     cache: Path | None,
     scheduler: str | None,
+    fps: float,
 ) -> None:
     """Measures errors on held-out clips.
 
@@ -115,15 +144,13 @@ def evaluate(
     if scheduler is not None and cache is None:
         raise click.UsageError("Missing option '--cache': workers find the database there.")
     names, presets = _renamed(names, presets)
-    common = Settings(
-        scenario, tests=tests, sites=sites, noise=noise, seed=seed, with_gyroscopes=gyroscopes
-    )
+    common = Settings(scenario, tests=tests, **simulation)
     if paper or experiments:
         runs = _comparisons(names, experiments, common)
     else:
-        chosen = _contenders(names, presets, settings, offline)
+        chosen = _contenders(names, presets, settings, offline, common.all_channels)
         runs = [("", replace(common, contenders=chosen))]
-    found = _evaluated(source, runs, cache, scheduler)
+    found = _evaluated(source, runs, cache, fps, scheduler)
     _write(found, json_path, plots)
     for title, evaluation in found:
         warn([f"not tested: {line}" for line in evaluation.left_out])
@@ -131,12 +158,16 @@ def evaluate(
 
 
 def _evaluated(
-    source: Path, runs: Sequence[tuple[str, Settings]], cache: Path | None, scheduler: str | None
+    source: Path,
+    runs: Sequence[tuple[str, Settings]],
+    cache: Path | None,
+    fps: float,
+    scheduler: str | None,
 ) -> list[tuple[str, Evaluation]]:
     executor = nullcontext() if scheduler is None else cluster(scheduler)
     with (
         progress_bar("Evaluating") as progress,
-        _database(source, cache, progress) as database,
+        _database(source, cache, fps, progress) as database,
         executor as workers,
     ):
         return [
@@ -180,8 +211,13 @@ def _contenders(
     presets: Sequence[str],
     options: Sequence[tuple[str, str]],
     offline: bool,
+    channels: Sequence[str],
 ) -> tuple[Contender, ...]:
-    wanted = names or [method.name for method in methods() if method.needs == ("database",)]
+    wanted = names or [
+        method.name
+        for method in methods()
+        if method.needs == ("database",) and method.can_use(channels)
+    ]
     known = {preset.name for name in wanted for preset in method_info(name).presets}
     for preset in presets:
         if preset not in known:
@@ -214,7 +250,7 @@ def _experiments(names: Sequence[str], wanted: Sequence[str]) -> list[tuple[str,
 
 @contextmanager
 def _database(
-    source: Path, cache: Path | None, progress: ProgressCallback
+    source: Path, cache: Path | None, fps: float, progress: ProgressCallback
 ) -> Iterator[MotionDatabase]:
     """Yields the folder's database with mirrored copies, from the cache if nothing has changed."""
     with tempfile.TemporaryDirectory(
@@ -224,10 +260,16 @@ def _database(
         path = Path(temporary) / "evaluation.smdb"
         if cache is not None:
             cache.mkdir(parents=True, exist_ok=True)
-            path = cache.absolute() / f"evaluation_{_fingerprint(source)}.smdb"
+            rate = "" if fps == DEFAULT_FPS else f"{fps:g}_hz_"
+            path = cache.absolute() / f"evaluation_{rate}{_fingerprint(source)}.smdb"
         if not path.exists():
             build_database(
-                [source], path, mirror=True, mappings=mapping_folder(), progress=progress
+                [source],
+                path,
+                rate_hz=fps,
+                mirror=True,
+                mappings=mapping_folder(),
+                progress=progress,
             )
         yield MotionDatabase(path)
 
@@ -274,15 +316,18 @@ def _show(title: str, found: Evaluation) -> None:
 
 def _summary(found: Evaluation) -> Table:
     table = Table("", box=None, pad_edge=False)
-    for name in ("mean", "median", "90 %", "angle (°)", "jerk (km/s³)", "latency (ms)"):
+    columns = ("mean", "median", "90 %", "angle (°)", "Euler (°)", "jerk (km/s³)", "latency (ms)")
+    for name in columns:
         table.add_column(name, justify="right")
     for method in found.methods:
         figures: dict[str, Any] = found.summary(method)
         late, angle = figures["latency_ms"], figures["joint_angle_deg"]
+        euler = figures["euler_angle_deg"]
         table.add_row(
             method,
             *(f"{figures[key]:.2f}" for key in ("mean_cm", "median_cm", "p90_cm")),
             "" if angle is None else f"{angle:.1f}",
+            "" if euler is None else f"{euler:.2f} ± {figures['euler_angle_deviation_deg']:.2f}",
             f"{figures['jerk_kmps3']:.3f}",
             "" if late is None else f"{late:.0f}",
         )

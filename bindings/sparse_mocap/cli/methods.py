@@ -50,7 +50,8 @@ def _show(method: MethodInfo) -> None:
     click.echo(f"{method.name}: {method.title}\n{method.summary}")
     if method.paper:
         click.echo(method.paper)
-    click.echo(f"Sensors: {_sensors(method)}, each with {', '.join(method.required_channels)}")
+    needed = [*method.required_channels, " or ".join(method.one_channel_of)]
+    click.echo(f"Sensors: {_sensors(method)}, each with {', '.join(filter(None, needed))}")
     if method.optional_channels:
         click.echo(f"Also uses, if available: {', '.join(method.optional_channels)}")
     click.echo(f"Needs: {_needs(method)}. Quality: {_quality(method)}.")

@@ -213,7 +213,31 @@ frame_option: Decorator = click.option(
 
 noise_option: Decorator = click.option(
     "--noise", type=click.Choice(list(noise_presets())), default="none", show_default=True,
-    help="Quality of the simulated sensors: ideal, research or consumer grade.",
+    help="Quality of the simulated sensors: ideal, accelerometers of research or consumer grade, or"
+    " trackers: optical, ultrasonic or inertial.",
+)  # fmt: skip
+
+
+class _Channels(click.ParamType):
+    """What simulated sensors give, separated by commas."""
+
+    name = "channels"
+    possible = ("specific_force", "angular_velocity", "orientation", "position")
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, ...]:
+        names = tuple(value.split(",")) if isinstance(value, str) else tuple(value)
+        for name in names:
+            if name not in self.possible:
+                self.fail(f"{name!r} is none of {', '.join(self.possible)}", param, ctx)
+        return names
+
+
+channels_option: Decorator = click.option(
+    "--channels", type=_Channels(), default="specific_force", show_default=True,
+    help="What the simulated sensors give, separated by commas: "
+    + ", ".join(_Channels.possible) + ".",
 )  # fmt: skip
 
 seed_option: Decorator = click.option(

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from .. import Clip, Motion, MotionDatabase
 from ..table_errors import TableError
 from .metrics import (
+    euler_errors_deg,
     frame_errors,
     interpolated,
     joint_angle_errors_deg,
@@ -71,6 +72,7 @@ class Truth:
     def __init__(self, database: MotionDatabase, clip: Clip, motion: Motion) -> None:
         """Takes the clip's motion on the database's skeleton, at its rate."""
         self.rate_hz = database.rate_hz
+        self.skeleton = database.skeleton
         rows = slice(clip.begin, min(clip.end, clip.begin + motion.num_frames))
         self.positions = np.asarray(database.array("positions")[rows], float)
         count = len(self.positions)
@@ -104,16 +106,17 @@ class Truth:
         jerk = mean_jerk(estimate.positions, self.rate_hz)
         if estimate.rotations is None or estimate.world is None:
             return clip_result(errors, frame_errors(errors), jerk)
-        angles = joint_angle_errors_deg(
-            self.rotations[is_known], nearest(times, estimate.rotations, wanted)
-        )
+        rotations = nearest(times, estimate.rotations, wanted)
+        angles = joint_angle_errors_deg(self.rotations[is_known], rotations)
+        true_angles = self.skeleton.angles(self.rotations[is_known])
+        eulers = euler_errors_deg(true_angles, self.skeleton.angles(rotations, true_angles))
         world = World(
             interpolated(times, estimate.world.ankles, wanted),
             interpolated(times, estimate.world.root, wanted),
             interpolated(times, estimate.world.heading_rad, wanted),
         )
         moved = self._movement(estimate.positions, estimate.rotations, world, is_known)
-        return clip_result(errors, frame_errors(errors), jerk, angles, moved, label)
+        return clip_result(errors, frame_errors(errors), jerk, angles, moved, label, eulers)
 
     def _movement(
         self, positions: Floats, rotations: Floats, world: World, is_known: NDArray[np.bool_]

@@ -21,6 +21,8 @@ class Contender:
     preset: str | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
     best_quality: bool = False
+    sensors: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    """The channels of its sensors, by site; empty: those of the evaluation."""
 
     @property
     def info(self) -> MethodInfo:
@@ -57,6 +59,6 @@ def variants(method: str, experiment: Experiment) -> list[Contender]:
     """Returns what an experiment of a method compares."""
     is_live = method_info(method).works_live
     return [
-        Contender(label, method, None, options, not is_live)
-        for label, options in experiment.variants
+        Contender(label, method, None, options, not is_live, sensors)
+        for label, options, sensors in experiment.variants
     ]

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "euler_errors_deg",
     "frame_errors",
     "interpolated",
     "joint_angle_errors_deg",
@@ -41,6 +42,12 @@ def joint_angle_errors_deg(truth: Floats, estimate: Floats) -> Floats:
     """Returns the angles (T, J) between rotations (T, J, 4; unit quaternions)."""
     cosine = np.abs(np.sum(truth * estimate, axis=-1))
     return np.asarray(np.degrees(2.0 * np.arccos(np.minimum(cosine, 1.0))))
+
+
+def euler_errors_deg(truth: Floats, estimate: Floats) -> Floats:
+    """Returns for each frame the mean error over its angles (T, A), in rad, as Liu et al. 2011."""
+    turns = np.remainder(estimate - truth + np.pi, 2.0 * np.pi) - np.pi
+    return np.asarray(np.degrees(np.abs(turns).mean(axis=1)))
 
 
 def nearest(times_s: Floats, values: Floats, wanted_s: Floats) -> Floats:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +21,7 @@ from .. import (
 )
 from ..readings import SensorInput
 from ..rotations import product
-from ..take import Take
+from ..take import SensorRecord, Take
 
 __all__ = ["Performance", "heading_rotations", "performed"]
 
@@ -38,6 +38,11 @@ class Performance:
     motion: Motion
     """On the standard skeleton with the performer's own proportions."""
     take: Take
+    """Of sensors that give every channel."""
+
+    def seen(self, channels: Mapping[str, Collection[str]]) -> Take:
+        """Returns the take of some of its sensors, with these channels of each."""
+        return Take({site: _with(self.take.sensors[site], own) for site, own in channels.items()})
 
     def inputs(self, channels: Sequence[Sequence[str]]) -> list[SensorInput]:
         """Its sensors as a stream of readings takes them, with these channels."""
@@ -61,8 +66,19 @@ def performed(
 ) -> Performance:
     """Returns the performance of a motion file. Raises FormatError, MappingError and OSError."""
     motion, _ = to_standard(read_motion(path)[0])
-    take = noisy(simulated(motion, sites, rate_hz), noise_presets()[noise], seed)
-    return Performance(motion, take)
+    ideal = simulated(motion, sites, rate_hz, with_position=True)
+    return Performance(motion, noisy(ideal, noise_presets()[noise], seed))
+
+
+def _with(record: SensorRecord, channels: Collection[str]) -> SensorRecord:
+    nothing = np.full_like(record.specific_force, np.nan)
+    return SensorRecord(
+        record.times_s,
+        record.specific_force if "specific_force" in channels else nothing,
+        record.angular_velocity if "angular_velocity" in channels else None,
+        record.orientation if "orientation" in channels else None,
+        record.position if "position" in channels else None,
+    )
 
 
 def heading_rotations(motion: Motion) -> Floats:

@@ -37,6 +37,8 @@ class ClipResult:
     """None where only positions are known."""
     match: str | None = None
     """What the reconstruction says of itself; None of baselines."""
+    euler_errors_deg: Floats | None = None
+    """(T,) mean over the joints' Euler angles; None where only positions are known."""
 
     @property
     def mean_angle_deg(self) -> float | None:
@@ -114,6 +116,12 @@ class Evaluation:
         means = [test.results[method].mean_angle_deg for test in self.tests]
         known = [mean for mean in means if mean is not None]
         return float(np.mean(known)) if known else None
+
+    def euler_errors_deg(self, method: str) -> Floats | None:
+        """Returns the Euler angle errors of all frames of all tests; None for positions alone."""
+        known = [test.results[method].euler_errors_deg for test in self.tests]
+        found = [errors for errors in known if errors is not None]
+        return np.concatenate(found) if found else None
 
     def movement(self, method: str | None) -> dict[str, Any]:
         """Returns the means over the tests of how a method, or with None the truth, moves."""
@@ -204,6 +212,7 @@ class Evaluation:
     def summary(self, method: str) -> dict[str, Any]:
         """Returns the figures of one method as JSON has them."""
         means, frames = self.clip_means_cm(method), self.frame_errors_cm(method)
+        eulers = self.euler_errors_deg(method)
         num_bins = int(frames.max() / HISTOGRAM_BIN_CM) + 1
         counts = np.histogram(frames, num_bins, (0.0, num_bins * HISTOGRAM_BIN_CM))[0]
         return {
@@ -211,6 +220,8 @@ class Evaluation:
             "median_cm": float(np.median(means)),
             "p90_cm": float(np.percentile(means, 90)),
             "joint_angle_deg": self.angle_error_deg(method),
+            "euler_angle_deg": None if eulers is None else float(eulers.mean()),
+            "euler_angle_deviation_deg": None if eulers is None else float(eulers.std()),
             "jerk_kmps3": self.jerk_kmps3(method),
             "jerk_ratio": float(np.mean(self.jerk_ratios(method))),
             "largest_jerk_ratio": float(np.max(self.jerk_ratios(method))),
@@ -242,6 +253,9 @@ class Evaluation:
                     "frames": test.num_frames,
                     "excluded_clips": test.num_excluded,
                     "error_cm": {method: r.mean_cm for method, r in test.results.items()},
+                    "euler_angle_deg": {
+                        method: _list(r.euler_errors_deg) for method, r in test.results.items()
+                    },
                     "match": {method: r.match for method, r in test.results.items()},
                     "movement": {
                         method: _figures(self._movement(test, name))
@@ -263,11 +277,18 @@ def clip_result(
     angle_errors_deg: Floats | None = None,
     movement: Movement | None = None,
     match: str | None = None,
+    euler_errors_deg: Floats | None = None,
 ) -> ClipResult:
     """Returns the result with errors in cm: of the joints (T, J) and of the frames (T,)."""
     angles = None if angle_errors_deg is None else angle_errors_deg.mean(axis=0)
     return ClipResult(
-        CM * frame_errors_m, CM * errors_m.mean(axis=0), jerk_kmps3, angles, movement, match
+        CM * frame_errors_m,
+        CM * errors_m.mean(axis=0),
+        jerk_kmps3,
+        angles,
+        movement,
+        match,
+        euler_errors_deg,
     )
 
 
@@ -282,6 +303,11 @@ def _figures(movement: Movement | None) -> dict[str, Any] | None:
         name: {str(s): _known(v) for s, v in value.items()} if name in drifts else _known(value)
         for name, value in figures.items()
     }
+
+
+def _list(values: Floats | None) -> list[float] | None:
+    """Returns the values of every frame, rounded as JSON has them."""
+    return None if values is None else [round(float(value), 3) for value in values]
 
 
 def _known(value: float) -> float | None:

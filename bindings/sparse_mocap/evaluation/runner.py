@@ -21,9 +21,10 @@ from .. import (
     nearest_poses,
     nearest_windows,
     playback_best_path,
+    to_standard,
 )
 from ..databases import content_hash, shared_database
-from ..readings import all_readings, channels_in
+from ..readings import SensorInput, all_readings
 from ..reconstruction import reconstruct
 from ..report import match
 from ..table_errors import TableError
@@ -62,8 +63,21 @@ class Settings:
     sites: tuple[str, ...] = PAPER_SITES
     noise: str = "none"
     seed: int = 0
+    channels: tuple[str, ...] = ("specific_force",)
+    """What the sensors give."""
     with_gyroscopes: bool = False
-    """Whether the sensors are inertial ones, not accelerometers alone."""
+    """Whether they have gyroscopes beside that."""
+
+    @property
+    def all_channels(self) -> tuple[str, ...]:
+        """What the sensors give, gyroscopes included."""
+        return (*self.channels, *(["angular_velocity"] * self.with_gyroscopes))
+
+    @property
+    def all_sites(self) -> tuple[str, ...]:
+        """Where the contenders have sensors."""
+        own = [site for contender in self.contenders for site in contender.sensors]
+        return tuple(dict.fromkeys((*self.sites, *own)))
 
 
 def evaluate(
@@ -188,7 +202,7 @@ class _Run:
             raise TableError(clip.source, 0, "is all that the scenario's database would hold")
         performance = performed(
             source_path(self.files, clip),
-            sites=self.settings.sites,
+            sites=self.settings.all_sites,
             noise=self.settings.noise,
             seed=self.settings.seed,
         )
@@ -213,7 +227,7 @@ class _Run:
         solved = self._solved(contender, performance, excluded)
         late = solved.latency_s
         self.latencies_ms[contender.label] = None if late is None else 1000.0 * late
-        motion = solved.motion
+        motion, _ = to_standard(solved.motion, self.database.skeleton)
         return Estimate(
             contender.label,
             np.asarray(solved.readings.times_s),
@@ -227,16 +241,16 @@ class _Run:
         self, contender: Contender, performance: Performance, excluded: Sequence[int]
     ) -> Reconstruction:
         needs = contender.info.needs
+        common = dict.fromkeys(self.settings.sites, self.settings.all_channels)
         return reconstruct(
-            performance.take,
+            performance.seen(contender.sensors or common),
             self.database if "database" in needs else None,
             method=contender.method,
             preset=contender.preset,
             options=contender.options,
             best_quality=contender.best_quality,
-            use_gyroscopes=self.settings.with_gyroscopes,
             model=self.trainer.model(contender, excluded) if "model" in needs else None,
-            body=performance.motion.skeleton if "body" in needs else None,
+            body=performance.motion.skeleton,
             excluded_clips=excluded if "database" in needs else (),
         )
 
@@ -244,9 +258,10 @@ class _Run:
         self, performance: Performance, truth: Floats, excluded: Sequence[int]
     ) -> list[Estimate]:
         database = self.database
-        take = performance.take
-        channels = [channels_in(record)[:1] for record in take.sensors.values()]
-        readings = all_readings(take, performance.inputs(channels), database.rate_hz)
+        sites = self.settings.sites
+        take = performance.seen(dict.fromkeys(sites, ("specific_force",)))
+        inputs = [SensorInput(site, ["specific_force"]) for site in sites]
+        readings = all_readings(take, inputs, database.rate_hz)
         truth_times = np.arange(len(truth)) / database.rate_hz
         frames = (
             (truth_times, nearest_poses(database, truth, excluded)),

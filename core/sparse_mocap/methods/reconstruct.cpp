@@ -26,7 +26,15 @@ ReadingSettings settings_for(const Method& method, const ReconstructionRequest& 
   settings.rate_hz = method.rate_hz();
   settings.gravity_average = average;
   settings.tracker_world = request.tracker_world;
+  settings.filter = method.reading_filter();
   return settings;
+}
+
+// Whether any sensor says anything.
+bool has_any(const Reading& reading) {
+  const auto is_there = [](const auto& values) { return values.array().isFinite().any(); };
+  return is_there(reading.specific_force) || is_there(reading.angular_velocity) ||
+         is_there(reading.position) || is_there(reading.orientation);
 }
 
 Reconstruction begun(const Method& method, const MethodContext& context) {
@@ -98,7 +106,7 @@ std::vector<PoseEstimate> LiveReconstructor::flush() {
 std::vector<PoseEstimate> LiveReconstructor::solve(const std::vector<Reading>& readings) {
   std::vector<PoseEstimate> estimates;
   for (const auto& reading : readings) {
-    if (reading.specific_force.array().isFinite().any()) last_reading_s_ = reading.time_s;
+    if (has_any(reading)) last_reading_s_ = reading.time_s;
     if (auto estimate = method_->step(reading)) estimates.push_back(std::move(*estimate));
   }
   return estimates;

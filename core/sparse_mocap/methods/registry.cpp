@@ -23,11 +23,11 @@ void require(bool is_met, const MethodInfo& method, const std::string& what) {
   if (!is_met) throw ConfigError("method " + method.name + " needs " + what);
 }
 
-std::string missing_channels(Channels required, Channels given) {
+std::string missing_channels(Channels required, Channels given, const char* between) {
   std::string names;
   for (const Channel channel : all_channels())
     if (required.has(channel) && !given.has(channel))
-      names += (names.empty() ? "" : ", ") + std::string(name_of(channel));
+      names += (names.empty() ? "" : between) + std::string(name_of(channel));
   return names;
 }
 
@@ -40,10 +40,13 @@ void check_sensors(const MethodInfo& method, const std::vector<Sensor>& sensors)
   require(count >= method.fewest_sensors && count <= method.most_sensors, method,
           range + " sensors, got " + std::to_string(count));
   for (const Sensor& sensor : sensors) {
-    const auto missing = missing_channels(method.required_channels, sensor.channels);
+    const std::string site(all_sites().at(static_cast<std::size_t>(sensor.site)).name);
+    const auto missing = missing_channels(method.required_channels, sensor.channels, ", ");
     require(missing.empty(), method,
-            missing + " of every sensor, and " +
-                std::string(all_sites().at(static_cast<std::size_t>(sensor.site)).name) +
+            missing + " of every sensor, and " + site + " does not give it");
+    const Channels choice = method.one_channel_of;
+    require(choice.is_empty() || !(choice & sensor.channels).is_empty(), method,
+            missing_channels(choice, {}, " or ") + " of every sensor, and " + site +
                 " does not give it");
   }
 }

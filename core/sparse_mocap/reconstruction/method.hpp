@@ -8,6 +8,7 @@
 #include "sparse_mocap/motion/skeleton.hpp"
 #include "sparse_mocap/readings/reading.hpp"
 #include "sparse_mocap/reconstruction/pose_estimate.hpp"
+#include "sparse_mocap/sensors/filter.hpp"
 
 namespace sparse_mocap {
 
@@ -18,6 +19,8 @@ class Method {
 
   virtual const Skeleton& skeleton() const = 0;  // of its poses
   virtual double rate_hz() const = 0;            // of the readings it takes and the poses it gives
+  // What the readings it takes are low-passed by: as those of a database, unless it says otherwise.
+  virtual GaussianFilter reading_filter() const { return kReadingFilter; }
 };
 
 // Answers readings as they come.

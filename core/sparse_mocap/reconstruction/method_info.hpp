@@ -29,6 +29,7 @@ struct Experiment {
   struct Variant {
     std::string label;
     OptionValues options;
+    std::vector<Sensor> sensors{};  // with the channels that it gets; empty: the evaluation's own
   };
   struct ClipPair {  // names of clips, as patterns
     std::string training, test;
@@ -51,6 +52,7 @@ struct MethodInfo {
   std::vector<OptionInfo> options;  // with the default preset's values
   Channels required_channels;       // of every sensor
   Channels optional_channels;       // used where a sensor has them
+  Channels one_channel_of;          // of every sensor, of the optional ones; none: it does not ask
   int fewest_sensors = 1;
   int most_sensors = 1;
   bool needs_database = false;

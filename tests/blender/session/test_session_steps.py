@@ -85,7 +85,7 @@ def test_database_and_take_say_what_is_in_them(files):
     assert loaded.duration_s == pytest.approx(5.0, abs=0.05)
 
 
-@pytest.mark.parametrize("method", ["", "path_regression", "tautges2011"])
+@pytest.mark.parametrize("method", ["", "path_regression", "tautges2011", "liu2011"])
 def test_reconstruct_gives_the_take_a_motion(files, method):
     choice = MethodChoice(method)
     performance = reconstruct.reconstruct_job(*files, choice=choice, best_quality=False).run()
@@ -103,7 +103,8 @@ def test_progress_can_stop_a_reconstruction(files):
 
 
 def test_menus_list_what_the_core_knows():
-    assert [name for name, _, _ in method_items()] == ["path_regression", "tautges2011"]
+    names = [name for name, _, _ in method_items()]
+    assert names == ["path_regression", "tautges2011", "liu2011"]
     names = [name for name, _, _ in option_items("path_regression")]
     assert "num_paths" in names
     assert all("(" in text for _, _, text in option_items("tautges2011"))

@@ -31,6 +31,14 @@ MethodContext small_context() {
   return context;
 }
 
+// With all that the method asks of sensors.
+MethodContext context_for(const MethodEntry& method) {
+  MethodContext context = small_context();
+  for (Sensor& sensor : context.sensors)
+    sensor.channels = method.info.required_channels | method.info.one_channel_of;
+  return context;
+}
+
 void make(const MethodEntry& method, const MethodSettings& settings, const MethodContext& context) {
   if (method.make_live != nullptr) make_live_method(method, settings, context);
   if (method.make_whole_take != nullptr) make_whole_take_method(method, settings, context);
@@ -51,7 +59,8 @@ TEST(Registry, DescribesEveryMethod) {
     EXPECT_FALSE(info.title.empty());
     EXPECT_FALSE(info.summary.empty());
     EXPECT_FALSE(info.presets.empty());
-    EXPECT_FALSE(info.required_channels.is_empty());
+    EXPECT_FALSE((info.required_channels | info.one_channel_of).is_empty());
+    EXPECT_TRUE(info.optional_channels.has_all(info.one_channel_of));
     EXPECT_LE(info.fewest_sensors, info.most_sensors);
     EXPECT_TRUE(make_live != nullptr || make_whole_take != nullptr);
     EXPECT_EQ(info.needs_model, train != nullptr);
@@ -72,7 +81,7 @@ TEST(Registry, MakesEveryMethodInEveryPresetWithEveryOption) {
       settings.options[option.name] = option.default_value;
     for (const auto& preset : method.info.presets) {
       settings.preset = preset.name;
-      EXPECT_EQ(refusal(method, settings, small_context()), "") << method.info.name;
+      EXPECT_EQ(refusal(method, settings, context_for(method)), "") << method.info.name;
     }
   }
 }
@@ -83,21 +92,25 @@ TEST(Registry, MakesTheVariantsOfEveryExperiment) {
       EXPECT_FALSE(experiment.help.empty());
       EXPECT_GE(experiment.variants.size(), 2U);
       if (method.info.needs_model || method.info.needs_body) continue;
-      for (const auto& variant : experiment.variants)
-        EXPECT_EQ(refusal(method, {"", variant.options}, small_context()), "") << variant.label;
+      for (const auto& variant : experiment.variants) {
+        MethodContext context = context_for(method);
+        if (!variant.sensors.empty()) context.sensors = variant.sensors;
+        EXPECT_EQ(refusal(method, {"", variant.options}, context), "") << variant.label;
+      }
     }
   }
 }
 
 TEST(Registry, ListsWhatItKnowsWhenAskedForSomethingElse) {
-  EXPECT_EQ(complaint([] { find_method("magic"); }),
-            "unknown method 'magic'; known are path_regression, tautges2011");
+  std::string names;
+  for (const auto& method : methods()) names += (names.empty() ? "" : ", ") + method.info.name;
+  EXPECT_EQ(complaint([] { find_method("magic"); }), "unknown method 'magic'; known are " + names);
   for (const auto& method : methods()) {
-    const auto preset = refusal(method, {"fancy", {}}, small_context());
+    const auto preset = refusal(method, {"fancy", {}}, context_for(method));
     EXPECT_NE(preset.find("'fancy'"), std::string::npos) << preset;
     for (const auto& known : method.info.presets)
       EXPECT_NE(preset.find(known.name), std::string::npos) << preset;
-    const auto option = refusal(method, {"", {{"num_neighbors", "3"}}}, small_context());
+    const auto option = refusal(method, {"", {{"num_neighbors", "3"}}}, context_for(method));
     EXPECT_NE(option.find("did you mean 'num_neighbours'"), std::string::npos) << option;
   }
 }
@@ -118,6 +131,20 @@ TEST(Registry, SaysWhatAMethodLacks) {
             "give it");
   EXPECT_EQ(refused([](auto& c) { c.excluded_clips = {0}; }),
             "every clip of the database is excluded");
+}
+
+TEST(Registry, AsksForOneOfSeveralChannels) {
+  const MethodEntry& method = find_method("liu2011");
+  MethodContext context = context_for(method);
+  for (const Channel channel : {Channel::position, Channel::orientation}) {
+    context.sensors[1].channels = channel;
+    EXPECT_EQ(refusal(method, {}, context), "");
+  }
+  context.sensors[1].channels = Channel::specific_force;
+  EXPECT_EQ(
+      refusal(method, {}, context),
+      "method liu2011 needs orientation or position of every sensor, and right_wrist does not "
+      "give it");
 }
 
 TEST(Registry, SaysWhichWayAMethodDoesNotWork) {

@@ -17,7 +17,6 @@
 namespace sparse_mocap {
 namespace {
 
-using testing::paper_sensors;
 using testing::readings_of;
 using testing::swaying_motion;
 using testing::template_skeleton;
@@ -54,6 +53,24 @@ Solve solver(const Way& way, const MethodContext& context) {
   }
   const std::shared_ptr<WholeTakeMethod> method = make_whole_take_method(entry, {}, context);
   return [method](const auto& take, const auto& progress) { return method->solve(take, progress); };
+}
+
+// At wrists and ankles, with all channels that the method uses, or must have.
+Channels channels_of(const std::string& method) {
+  const MethodInfo& info = find_method(method).info;
+  return info.required_channels | info.one_channel_of | Channel::specific_force;
+}
+
+std::vector<Sensor> sensors_for(const std::string& method) {
+  std::vector<Sensor> sensors = testing::paper_sensors();
+  for (Sensor& sensor : sensors) sensor.channels = channels_of(method);
+  return sensors;
+}
+
+void silence(Reading& reading, Eigen::Index sensor) {
+  reading.specific_force.col(sensor).setConstant(kNan);
+  reading.position.col(sensor).setConstant(kNan);
+  reading.orientation.col(sensor).setConstant(kNan);
 }
 
 std::vector<Way> all_ways() {
@@ -109,9 +126,10 @@ void expect_finite(const std::vector<PoseEstimate>& estimates) {
 class EachWay : public ::testing::TestWithParam<Way> {
  protected:
   Solve made(const std::vector<int>& excluded = {}) const {
-    return solver(GetParam(), {shared_database(), nullptr, {}, paper_sensors(), excluded});
+    return solver(GetParam(), {shared_database(), nullptr, {}, sensors_, excluded});
   }
-  const std::vector<Reading> take_ = readings_of(*shared_database(), 4, paper_sensors());
+  const std::vector<Sensor> sensors_ = sensors_for(GetParam().method);
+  const std::vector<Reading> take_ = readings_of(*shared_database(), 4, sensors_);
 };
 
 TEST_P(EachWay, GivesOneEstimateAReadingAtItsTime) {
@@ -160,7 +178,10 @@ TEST_P(EachWay, HangsOnNoRounding) {
   const Motion plain = to_motion(solve(take_, Progress()), skeleton, 25.0);
   testing::Random random(1);
   auto take = take_;
-  for (auto& reading : take) reading.specific_force += 1e-6 * random.matrix(3, 4, 1.0);
+  for (auto& reading : take) {
+    reading.specific_force += 1e-6 * random.matrix(3, 4, 1.0);
+    reading.position += 1e-6 * random.matrix(3, 4, 1.0);
+  }
   const Motion other = to_motion(solve(take, Progress()), skeleton, 25.0);
   for (int t = 0; t < plain.num_frames(); ++t) {
     const JointTransforms a = plain.transforms(t), b = other.transforms(t);
@@ -191,8 +212,9 @@ TEST_P(EachWay, NeverUsesExcludedClips) {
 
 TEST_P(EachWay, ContinuesWhileSensorsAreSilent) {
   auto take = take_;
-  for (std::size_t t = 20; t < 50; ++t) take[t].specific_force.col(1).setConstant(kNan);
-  for (std::size_t t = 35; t < 40; ++t) take[t].specific_force.setConstant(kNan);
+  for (std::size_t t = 20; t < 50; ++t) silence(take[t], 1);
+  for (std::size_t t = 35; t < 40; ++t)
+    for (Eigen::Index s = 0; s < 4; ++s) silence(take[t], s);
   for (std::size_t t = 60; t < 70; ++t) take[t].specific_force(2, 3) = kNan;
   const auto estimates = made()(take, Progress());
   ASSERT_EQ(estimates.size(), take.size());
@@ -201,15 +223,17 @@ TEST_P(EachWay, ContinuesWhileSensorsAreSilent) {
     for (Eigen::Index s = 0; s < 4; ++s)
       EXPECT_EQ(std::isnan(estimates[t].diagnostics.at("sensor_misfit_mps2")[s]),
                 take[t].specific_force.col(s).hasNaN());
-  for (auto& reading : take) reading.specific_force.setConstant(kNan);
+  for (auto& reading : take)
+    for (Eigen::Index s = 0; s < 4; ++s) silence(reading, s);
   expect_finite(made()(take, Progress()));
 }
 
 TEST_P(EachWay, WorksWithOneSensorWithAllAndWithGravityDirections) {
   std::vector<Sensor> all;
   for (int site = 0; site < static_cast<int>(all_sites().size()); ++site)
-    all.push_back({site, 0.7, Channel::specific_force | Channel::gravity_direction});
-  for (const auto& sensors : {std::vector<Sensor>{{0, 1.0}}, all}) {
+    all.push_back({site, 0.7, channels_of(GetParam().method) | Channel::gravity_direction});
+  const std::vector<Sensor> one{{0, 1.0, channels_of(GetParam().method)}};
+  for (const auto& sensors : {one, all}) {
     const auto solve = solver(GetParam(), {shared_database(), nullptr, {}, sensors, {}});
     const auto estimates = solve(readings_of(*shared_database(), 4, sensors), Progress());
     expect_finite(estimates);
@@ -231,8 +255,8 @@ TEST_P(EachWay, CanBeCancelled) {
 
 TEST_P(EachWay, WorksOnADatabaseOfAFewFrames) {
   const auto tiny = testing::database_of({swaying_motion(template_skeleton(), 1, 3, 25.0)});
-  const auto solve = solver(GetParam(), {tiny, nullptr, {}, paper_sensors(), {}});
-  expect_finite(solve(readings_of(*tiny, 0, paper_sensors()), Progress()));
+  const auto solve = solver(GetParam(), {tiny, nullptr, {}, sensors_, {}});
+  expect_finite(solve(readings_of(*tiny, 0, sensors_), Progress()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, EachWay, ::testing::ValuesIn(all_ways()), [](const auto& test) {
@@ -242,9 +266,10 @@ INSTANTIATE_TEST_SUITE_P(Methods, EachWay, ::testing::ValuesIn(all_ways()), [](c
 class EachLiveMethod : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EachLiveMethod, AnswersEachReadingAfterItsLatency) {
-  const auto take = readings_of(*shared_database(), 4, paper_sensors());
-  const auto method = make_live_method(find_method(GetParam()), {},
-                                       {shared_database(), nullptr, {}, paper_sensors(), {}});
+  const auto sensors = sensors_for(GetParam());
+  const auto take = readings_of(*shared_database(), 4, sensors);
+  const auto method =
+      make_live_method(find_method(GetParam()), {}, {shared_database(), nullptr, {}, sensors, {}});
   const auto latency = static_cast<std::size_t>(std::lround(method->latency_s() * 25.0));
   EXPECT_GT(method->history_s(), 0.0);
   for (std::size_t t = 0; t < take.size(); ++t) {

@@ -3,7 +3,10 @@
 
 #include <cmath>
 
+#include "sparse_mocap/base/quaternions.hpp"
 #include "sparse_mocap/database/database_rows.hpp"
+#include "sparse_mocap/motion/heading.hpp"
+#include "sparse_mocap/motion/joint_rotations.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 
 namespace sparse_mocap::testing {
@@ -79,11 +82,51 @@ std::vector<Sensor> paper_sensors() {
   return sensors;
 }
 
+namespace {
+
+// Moves the heading frame, on the ground, on into a frame of the database.
+void advance(const MotionDatabase& database, int frame, double& yaw_rad, Vec3& origin) {
+  const auto rates = database.root_motion().row(frame).cast<double>();
+  const double dt_s = database.frame_time_s();
+  origin += yaw_rotation(yaw_rad) * (dt_s * Vec3(rates[root_motion_column::velocity_left], 0.0,
+                                                 rates[root_motion_column::velocity_forward]));
+  yaw_rad += dt_s * rates[root_motion_column::yaw_rate];
+}
+
+JointTransforms transforms_at(const MotionDatabase& database, int frame, double yaw_rad,
+                              const Vec3& origin) {
+  JointRotations rotations =
+      joint_rotations(database.skeleton(), database.angles().row(frame).transpose().cast<double>());
+  rotations[0] = yaw_rotation(yaw_rad) * rotations[0];
+  JointTransforms out;
+  const double height_m = database.root_motion()(frame, root_motion_column::height);
+  forward_kinematics(database.skeleton(), origin + height_m * kUp, rotations, out);
+  return out;
+}
+
+void put_place(const JointTransforms& pose, const Sensor& sensor, Eigen::Index at,
+               Reading& reading) {
+  const Site& site = all_sites()[static_cast<std::size_t>(sensor.site)];
+  const auto carrier = static_cast<std::size_t>(site.carrier);
+  const Mat3& R = pose.R_world_joint[static_cast<std::size_t>(site.orientation)];
+  if (sensor.channels.has(Channel::position))
+    reading.position.col(at) = (1.0 - sensor.position_along_bone) * pose.pivot[carrier] +
+                               sensor.position_along_bone * pose.end[carrier];
+  if (sensor.channels.has(Channel::orientation))
+    reading.orientation.col(at) = wxyz_of(Quat(Mat3(R * site.R_joint_sensor)));
+}
+
+}  // namespace
+
 std::vector<Reading> readings_of(const MotionDatabase& database, int clip,
                                  const std::vector<Sensor>& sensors) {
   const Clip& wanted = database.clips()[static_cast<std::size_t>(clip)];
   std::vector<Reading> readings;
+  double yaw_rad = 0.0;
+  Vec3 origin = Vec3::Zero();
   for (int frame = wanted.begin; frame < wanted.end; ++frame) {
+    if (frame > wanted.begin) advance(database, frame, yaw_rad, origin);
+    const JointTransforms pose = transforms_at(database, frame, yaw_rad, origin);
     Reading reading(static_cast<Eigen::Index>(sensors.size()));
     reading.time_s = (frame - wanted.begin) * database.frame_time_s();
     for (std::size_t s = 0; s < sensors.size(); ++s) {
@@ -101,6 +144,7 @@ std::vector<Reading> readings_of(const MotionDatabase& database, int clip,
         reading.angular_velocity.col(at) = row(site.angular_velocity);
       if (channels.has(Channel::gravity_direction))
         reading.gravity_direction.col(at) = row(site.gravity_direction);
+      put_place(pose, sensors[s], at, reading);
     }
     readings.push_back(reading);
   }

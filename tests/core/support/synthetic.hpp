@@ -41,8 +41,8 @@ std::shared_ptr<const MotionDatabase> database_of(const std::vector<Motion>& mot
 // left_wrist, right_wrist, left_ankle, right_ankle at the ends of their bones.
 std::vector<Sensor> paper_sensors();
 
-// What the database's own virtual sensors read in one of its clips: the sensors' channels, of which
-// specific force, angular velocity and gravity direction are known.
+// What the database's own virtual sensors read in one of its clips, which begins at the origin: the
+// sensors' channels.
 std::vector<Reading> readings_of(const MotionDatabase& database, int clip,
                                  const std::vector<Sensor>& sensors);
 

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "sparse_mocap/liu2011/config.hpp"
+#include "sparse_mocap/liu2011/history_search.hpp"
+#include "sparse_mocap/liu2011/motion_examples.hpp"
+#include "sparse_mocap/liu2011/start.hpp"
+#include "sparse_mocap/reconstruction/method_info.hpp"
+#include "sparse_mocap/retrieval/signals.hpp"
+
+namespace sparse_mocap::liu2011 {
+
+// Realtime human motion control with a small number of inertial sensors: Liu, Wei, Chai, Ha, Rhee,
+// I3D 2011.
+class Reconstructor : public LiveMethod {
+ public:
+  // Throws ConfigError.
+  Reconstructor(const Config& config, const MethodContext& context);
+
+  const Skeleton& skeleton() const override { return examples_.body(); }
+  double rate_hz() const override { return examples_.database().rate_hz(); }
+  GaussianFilter reading_filter() const override { return {}; }
+  double latency_s() const override { return 0.0; }
+  double history_s() const override { return num_poses_ / rate_hz(); }
+
+  std::optional<PoseEstimate> step(const Reading& reading) override;
+  std::vector<PoseEstimate> flush() override;
+  void reset() override;
+
+ private:
+  void remember(BodyPose pose);
+  PoseEstimate told(const Reading& reading, const Eigen::VectorXd& weights) const;
+
+  MotionExamples examples_;
+  Config config_;
+  ControlWeights control_;
+  int num_poses_;  // m
+  std::vector<WornSensor> worn_;
+  std::vector<bool> is_searched_;
+  HistorySearch search_;
+  Start start_;
+  std::vector<retrieval::Signal> signals_;
+  retrieval::FeatureRows signal_rows_;  // specific forces of the database
+  std::vector<BodyPose> recent_;        // the last m poses, the newest first, in the world
+  double yaw_rad_ = 0.0;                // of the newest
+  std::vector<retrieval::Neighbour> nearest_;
+};
+
+}  // namespace sparse_mocap::liu2011

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Liu et al. 2011 on simulated trackers of position and orientation."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from sparse_mocap import (
+    ConfigError,
+    MotionDatabase,
+    Reconstruction,
+    SensorRecord,
+    Take,
+    reconstruct,
+)
+from sparse_mocap.evaluation import Performance, excluded_clips, performed
+
+SITES = ("left_hand", "right_hand", "left_ankle", "right_ankle", "head", "torso")
+BOTH = ("position", "orientation")
+CLIP = "ada_walk_01"
+
+Floats = NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def ideal(library: Path) -> Performance:
+    return performed(library / f"{CLIP}.bvh", sites=SITES)
+
+
+def solved(
+    database: MotionDatabase,
+    performance: Performance,
+    take: Take,
+    options: dict[str, object] | None = None,
+    *,
+    tracker_yaw_rad: float = 0.0,
+) -> Reconstruction:
+    """Returns the reconstruction without the clip itself, on the performer's body."""
+    names = [clip.name for clip in database.clips]
+    return reconstruct(
+        take,
+        database,
+        method="liu2011",
+        options=options or {},
+        body=performance.motion.skeleton,
+        tracker_yaw_rad=tracker_yaw_rad,
+        excluded_clips=excluded_clips(database.clips, names.index(CLIP), 1),
+    )
+
+
+def errors_cm(found: Reconstruction, performance: Performance) -> Floats:
+    """Returns the mean distance of the joints in the world, frame by frame."""
+    return _errors_cm(found, performance, "world")
+
+
+def heading_errors_cm(found: Reconstruction, performance: Performance) -> Floats:
+    """Returns the same in the heading frame."""
+    return _errors_cm(found, performance, "heading")
+
+
+def _errors_cm(found: Reconstruction, performance: Performance, frame: str) -> Floats:
+    truth = np.asarray(performance.motion.resampled(found.rate_hz).joint_positions(frame))
+    ours = np.asarray(found.motion.joint_positions(frame))
+    count = min(len(truth), len(ours))
+    return 100 * np.linalg.norm(ours[:count] - truth[:count], axis=-1).mean(axis=1)
+
+
+def all_give(channels: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
+    return dict.fromkeys(SITES, channels)
+
+
+@pytest.mark.parametrize(("channels", "limit_cm"), [(BOTH, 0.7), (("position",), 1.2)])
+def test_six_trackers_tell_a_movement_in_the_world(
+    database: MotionDatabase, ideal: Performance, channels: tuple[str, ...], limit_cm: float
+) -> None:
+    found = solved(database, ideal, ideal.seen(all_give(channels)))
+    assert found.latency_s == 0.0
+    assert errors_cm(found, ideal).mean() < limit_cm
+
+
+def test_it_begins_where_and_as_the_sensors_say(
+    database: MotionDatabase, ideal: Performance
+) -> None:
+    take = ideal.seen(all_give(("position",)))
+    assert errors_cm(solved(database, ideal, take), ideal)[0] < 0.6
+    turned = solved(database, ideal, take, tracker_yaw_rad=2.8)  # faces the other way
+    np.testing.assert_allclose(
+        heading_errors_cm(turned, ideal), heading_errors_cm(solved(database, ideal, take), ideal),
+        atol=1.0,
+    )  # fmt: skip
+
+
+def test_orientations_alone_tell_the_pose(database: MotionDatabase, ideal: Performance) -> None:
+    found = solved(database, ideal, ideal.seen(all_give(("orientation",))))
+    assert heading_errors_cm(found, ideal).mean() < 2.5
+
+
+def test_wrong_positions_are_held_off(
+    database: MotionDatabase, library: Path, ideal: Performance
+) -> None:
+    noisy = performed(library / f"{CLIP}.bvh", sites=SITES, noise="ultrasonic", seed=1)
+    found = solved(database, ideal, noisy.seen(all_give(("position",))))
+    errors = errors_cm(found, ideal)
+    assert errors.mean() < 2.0
+    assert errors.max() < 8.0
+
+
+def test_a_silent_tracker_is_bridged(database: MotionDatabase, ideal: Performance) -> None:
+    take = ideal.seen(all_give(BOTH))
+    record = take.sensors["left_ankle"]
+    assert record.position is not None
+    assert record.orientation is not None
+    kept = (record.times_s < 1.0) | (record.times_s > 2.0)
+    short = SensorRecord(
+        record.times_s[kept],
+        record.specific_force[kept],
+        None,
+        record.orientation[kept],
+        record.position[kept],
+    )
+    found = solved(database, ideal, Take(take.sensors | {"left_ankle": short}))
+    assert errors_cm(found, ideal).mean() < 2.0
+
+
+def test_accelerations_alone_are_refused(database: MotionDatabase, ideal: Performance) -> None:
+    with pytest.raises(ConfigError, match="needs orientation or position of every sensor"):
+        solved(database, ideal, ideal.seen(all_give(("specific_force",))))
