@@ -22,7 +22,7 @@ LABELS = {
     "Open Motion Database": "Bewegungsdatenbank öffnen",
     "Save Motion Database As": "Bewegungsdatenbank speichern als",
     "Build Motion Database": "Bewegungsdatenbank erstellen",
-    "Build from What Is in This File": "Aus dieser Datei erstellen",
+    "Build from This File": "Aus dieser Datei erstellen",
     "Build from motion files": "Aus Bewegungsdateien erstellen",
     "Add Folders or Files": "Ordner oder Dateien dazu",
     "Remove": "Entfernen",

@@ -148,7 +148,7 @@ class SPARSEMOCAP_OT_build_from_file(JobOperator, Operator):
     """Build a motion database from the armatures of the open file."""
 
     bl_idname = "sparse_mocap.build_from_file"
-    bl_label = "Build from What Is in This File"
+    bl_label = "Build from This File"
     bl_description = (
         "Build a motion database from every action of the scene's armatures. Import FBX, glTF or"
         " USD files first, then use this"

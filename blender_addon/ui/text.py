@@ -12,7 +12,7 @@ from bpy.types import Context, UILayout
 from ..scene.translations import tr
 
 _FONT = 0  # the interface's
-_MARGIN_PX = 58.0  # of panel and box, and the scroll bar
+_MARGIN_PX = 76.0  # of panel and box, and the scroll bar
 _ICON_PX = 24.0
 _USUAL_WIDTH_PX, _USUAL_POINTS = 260.0, 11
 _NARROWEST_PX = 80.0
