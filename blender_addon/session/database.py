@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import tempfile
 import time
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from .core import core
 from .errors import InputError
 from .file_cache import FileCache
 from .job import Job, Progress
+from .names import file_name
 from .steps import Steps
 
 SUFFIX = ".smdb"
@@ -101,8 +103,12 @@ def build_from_motions_steps(
     target = checked_output(output)
     with tempfile.TemporaryDirectory(prefix="sparse_mocap_") as folder:
         for done, (name, motion) in enumerate(motions):
-            path = Path(folder, *name.split("/"))
-            path = path.with_name(path.name + ".bvh")
+            parts = name.split("/")
+            if sys.platform == "win32":
+                parts = [file_name(part) for part in parts]
+            path = Path(folder, *parts[:-1], parts[-1] + ".bvh")
+            while path.exists():  # Windows and macOS take Walk and walk for one name
+                path = path.with_name(f"_{path.name}")
             path.parent.mkdir(parents=True, exist_ok=True)
             core().write_bvh(path, motion)
             yield 0.1 * done / len(motions)
