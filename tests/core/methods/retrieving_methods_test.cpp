@@ -164,7 +164,7 @@ TEST_P(EachWay, GivesTheSameResultsAgain) {
 
 TEST_P(EachWay, GivesTheSameResultsOnAnyNumberOfThreads) {
   const auto on = [&](int num_threads) {
-    MethodContext context{shared_database(), nullptr, {}, paper_sensors(), {}};
+    MethodContext context{shared_database(), nullptr, {}, sensors_, {}};
     context.num_threads = num_threads;
     return solver(GetParam(), context)(take_, Progress());
   };
