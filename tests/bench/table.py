@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Prints the results of the benchmarks: times, each beside its baseline, and what got slower.
 
-python tests/bench/table.py [--store] RESULTS.json...
+python tests/bench/table.py [--store] [--plot GROWTH.png] RESULTS.json...
 
-`--store` makes the results the ones that later runs are compared with (tests/bench/baseline.json).
+`--store` makes the results the ones that later runs are compared with (tests/bench/baseline.json);
+`--plot` draws how the times grow with the database.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import re
 import statistics
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -82,7 +83,35 @@ def slower(now: dict[str, float], stored: dict[str, float]) -> dict[str, float]:
     return {name: ratio / usual for name, ratio in ratios.items() if ratio > SLOWER * usual}
 
 
-def main(paths: list[Path], store: bool) -> None:
+ROWS = {"30k": 3.0e4, "100k": 1.0e5, "300k": 3.0e5, "680k": 6.6e5, "5m": 5.1e6}
+
+
+def growth(now: dict[str, float]) -> dict[str, list[tuple[float, float]]]:
+    """Rows and times (ms) of whatever was measured on several sizes, the smallest first."""
+    curves: dict[str, list[tuple[float, float]]] = {}
+    for name, ms in now.items():
+        kind, _, size = name.rpartition("/")
+        if size in ROWS and kind.startswith(("recorded_knn", "recorded_frame")):
+            curves.setdefault(kind, []).append((ROWS[size], ms))
+    return {kind: sorted(curve) for kind, curve in curves.items() if len(curve) > 1}
+
+
+def plot_growth(now: dict[str, float], path: Path) -> None:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8, 6), layout="constrained")
+    axes = figure.subplots()
+    for kind, curve in growth(now).items():
+        if not kind.endswith("build"):
+            axes.loglog(*zip(*curve, strict=True), marker="o", label=kind.partition("_")[2])
+    axes.set_xlabel("frames of the database")
+    axes.set_ylabel("ms, median of processor time")
+    axes.grid(which="both", alpha=0.3)
+    axes.legend(fontsize="small")
+    figure.savefig(path)
+
+
+def main(paths: list[Path], store: bool, plot: Path | None = None) -> None:
     results: dict[str, dict[str, Any]] = {}
     for path in paths:
         text = path.read_text(encoding="utf-8")
@@ -90,6 +119,8 @@ def main(paths: list[Path], store: bool) -> None:
     print_times(results)
     print_ratios(results)
     now = {name: round(time_ms(result), 6) for name, result in results.items()}
+    if plot is not None and growth(now):
+        plot_growth(now, plot)
     if store:
         STORED.write_text(json.dumps(now, indent=2) + "\n", encoding="utf-8")
     stored = json.loads(STORED.read_text(encoding="utf-8")) if STORED.exists() else {}
@@ -102,4 +133,9 @@ def main(paths: list[Path], store: bool) -> None:
 
 
 if __name__ == "__main__":
-    main([Path(path) for path in sys.argv[1:] if path != "--store"], "--store" in sys.argv)
+    parser = argparse.ArgumentParser()
+    parser.add_argument("results", nargs="+", type=Path)
+    parser.add_argument("--store", action="store_true")
+    parser.add_argument("--plot", type=Path)
+    given = parser.parse_args()
+    main(given.results, given.store, given.plot)

@@ -32,6 +32,11 @@ def test_compares_what_both_have_measured() -> None:
     assert table.slower({"new": 9.0, "graph": 2.0}, STORED) == {}
 
 
+def test_gathers_how_times_grow() -> None:
+    now = {"recorded_frame/paper/680k": 3.0, "recorded_frame/paper/30k": 1.0, "energy": 9.0}
+    assert table.growth(now) == {"recorded_frame/paper": [(3.0e4, 1.0), (6.6e5, 3.0)]}
+
+
 def test_shows_times_beside_baselines(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     def result(name: str, ms: float) -> dict[str, object]:
         return {"name": name, "cpu_time": ms, "real_time": ms, "time_unit": "ms"}
