@@ -61,6 +61,7 @@ LABELS = {
     "Stop Live Preview": "Live-Vorschau beenden",
     "Recentre": "In die Mitte",
     "Face Front": "Nach vorn drehen",
+    "Front": "Vorn",
     "Record": "Aufnehmen",
     "Record or Stop": "Aufnehmen oder beenden",
     "Stop Recording": "Aufnahme beenden",

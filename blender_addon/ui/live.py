@@ -97,7 +97,7 @@ def _character(layout: UILayout, context: Context) -> None:
     settings, is_followed = settings_of(context.scene), live_scene.followed() is not None
     row = layout.row()
     row.enabled = not is_followed
-    row.prop(settings, "target", icon="ARMATURE_DATA")
+    row.prop(settings, "target", text="", icon="ARMATURE_DATA")
     row = layout.row()
     row.enabled = settings.target is not None and not is_ours(settings.target)
     row.prop(settings, "foot_lock")
@@ -106,7 +106,7 @@ def _character(layout: UILayout, context: Context) -> None:
     buttons = row.row(align=True)
     buttons.enabled = is_followed
     buttons.operator("sparse_mocap.recentre")
-    buttons.operator("sparse_mocap.face_front")
+    buttons.operator("sparse_mocap.face_front", text="Front")
 
 
 def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
