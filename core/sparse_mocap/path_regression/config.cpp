@@ -54,7 +54,7 @@ Config whole_take_config() {
           {{side * centre_s, sigma_s, side * centre_s - 0.24, side * centre_s + 0.24}});
   config.fit.lever_m = 0.2;
   config.fit.step = 3.0;
-  config.fit.smoothness = 12.0;
+  config.fit.smoothness = 4.0;
   config.wide_spread_m = 0.07;
   return config;
 }

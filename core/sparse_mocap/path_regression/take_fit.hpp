@@ -20,19 +20,19 @@ struct FittedFrame {
 
 // What the terms of a fit count. Residuals are in metres, or in radians, squared and summed.
 struct FitWeights {
-  double lever_m = 0.1;        // of the axes' tips, see pose_points
-  double pose = 1.0;           // points where the retrieved poses have them
-  double step = 0.0;           // points move on as in the retrieved motions
-  double smoothness = 0.0;     // second differences of the points, where retrieved poses differ
-  double calm_mps = 0.5;       // of joints that move so fast they count half
-  double inclination = 6.0;    // limbs inclined as measured
-  double contact = 40.0;       // feet that stand move on no more than retrieved ones that stand
-  double stands_from = 0.4;    // a foot whose certainty is less does not stand,
-  double stands_at = 0.8;      // one whose certainty is more does; in between gradually
-  double foot_height = 100.0;  // feet that stand are as high as retrieved ones, others not lower
-  double turning = 100.0;      // joints turn about the vertical as gyroscopes say
-  double root_step = 30.0;     // the root moves as in the retrieved motions
-  double root_turn = 30.0;     // and turns as in them
+  double lever_m = 0.1;       // of the axes' tips, see pose_points
+  double pose = 1.0;          // points where the retrieved poses have them
+  double step = 0.0;          // points move on as in the retrieved motions
+  double smoothness = 0.0;    // second differences of the points, where retrieved poses differ
+  double calm_mps = 0.5;      // of joints that move so fast they count half
+  double inclination = 6.0;   // limbs inclined as measured
+  double contact = 40.0;      // feet that stand move on no more than retrieved ones that stand
+  double stands_from = 0.4;   // a foot whose certainty is less does not stand,
+  double stands_at = 0.8;     // one whose certainty is more does; in between gradually
+  double foot_height = 30.0;  // feet that stand are as high as retrieved ones, others not lower
+  double turning = 100.0;     // joints turn about the vertical as gyroscopes say
+  double root_step = 30.0;    // the root moves as in the retrieved motions
+  double root_turn = 30.0;    // and turns as in them
   double root_height = 5.0;
   double root_smoothness = 2.0;  // second differences of the root's position and heading
 };

@@ -40,7 +40,7 @@ FIGURES = [  # sensors, quality, what is measured, how much it is, and by how mu
     ("wrists and ankles", "whole take", "error_cm", 2.791, 0.07),
     ("wrists and ankles", "whole take", "lag_ms", -0.3, 2.0),
     ("wrists and ankles", "whole take", "slide_cmps", 1.56, 0.3),
-    ("wrists and ankles", "whole take", "jerk_kmps3", 0.0534, 0.004),
+    ("wrists and ankles", "whole take", "jerk_kmps3", 0.0552, 0.004),
     ("wrists and ankles", "live", "wrist_turn_deg", 0.195, 0.03),
     ("wrists and ankles", "whole take", "wrist_turn_deg", 0.157, 0.03),
     ("with gyroscopes", "live", "error_cm", 2.678, 0.07),
