@@ -11,11 +11,6 @@ WINDOWS_BPY='bpy==4.5.15 numpy==1.26.4'
 WINE_BUILD=$ROOT/build/windows
 export SPARSE_MOCAP_WINE_DEVICES="$WINE_BUILD/wine/dosdevices"
 
-# What developers alone use, on Linux.
-NOT_FOR_WINDOWS='accuracy demo test_accuracy_table.py test_corpus.py test_fourth_method.py
-  test_house_rules.py test_layers.py test_macos_modules.py test_mutants.py test_packaged_modules.py
-  test_packaging.py test_public_names.py test_readme.py test_tested_modules.py test_words.py'
-
 # verb_windows [VERSION ARGS]: all tests, or that CPython with ARGS and the packed modules.
 verb_windows() {
   QUIET=${1:+1}
@@ -46,15 +41,9 @@ test_windows() {
 
 # test_windows_python VERSION: the tests of the package and of the add-on's part without Blender.
 test_windows_python() {
-  set -- "$1" tests/python tests/blender/session
-  for name in $NOT_FOR_WINDOWS; do
-    set -- "$@" --ignore "tests/python/$name"
-  done
   cd "$ROOT"
-  version=$1
-  shift
-  in_windows_python "$version" -m pytest -q -p no:cacheprovider -c bindings/pyproject.toml \
-    --rootdir . "$@"
+  in_windows_python "$1" -m pytest -q -p no:cacheprovider -c bindings/pyproject.toml \
+    --rootdir . tests/python tests/blender/session
 }
 
 # test_windows_bpy: Blender's tests on the extension, installed by Blender. bpy may crash when Python

@@ -19,6 +19,16 @@ from real_data import NOT_SET, real_data_folder
 from sparse_mocap.cli.app import app
 from sparse_mocap.demo_motions import generate_library, generate_performance
 
+FOR_DEVELOPERS = [
+    "accuracy", "demo", "test_accuracy_table.py", "test_corpus.py", "test_fourth_method.py",
+    "test_house_rules.py", "test_layers.py", "test_macos_modules.py", "test_mutants.py",
+    "test_packaged_modules.py", "test_packaging.py", "test_public_names.py", "test_readme.py",
+    "test_tested_modules.py", "test_words.py",
+]  # fmt: skip
+"""What tests the sources and the tools for them, which need Linux."""
+
+collect_ignore = [] if sys.platform == "linux" else FOR_DEVELOPERS
+
 ACTORS = ("ada", "bruno")
 CLIPS = ("walk_01", "walk_02", "squat_01", "squat_02", "kickleft_01", "kickright_01")
 
