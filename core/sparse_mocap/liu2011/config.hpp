@@ -29,7 +29,7 @@ struct Config {
   double root_deviation_floor_m = 0.01;
   // A departure from the paper: what the sensors say counts in the search, too.
   double search_position_per_m = 10.0;
-  double search_orientation = 2.0;
+  double search_orientation = 8.0;
 
   // Section 6.
   double sigma_position_m = 0.01;
