@@ -98,6 +98,9 @@ class Reconstruction:
     def latency_s(self) -> float | None:
         """How long after its reading a live pose is ready, in s; None for best quality."""
     @property
+    def notes(self) -> list[str]:
+        """What the method says of the take, a line each."""
+    @property
     def contacts(self) -> Floats:
         """(T, 2) probability that the left and the right foot are on the ground."""
     @property

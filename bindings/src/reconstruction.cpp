@@ -148,6 +148,8 @@ void bind_result(py::module_& m) {
       .def_readonly("rate_hz", &Reconstruction::rate_hz, "Frames a second.")
       .def_readonly("latency_s", &Reconstruction::latency_s,
                     "How long after its reading a live pose is ready, in s; None for best quality.")
+      .def_readonly("notes", &Reconstruction::notes,
+                    "What the method says of the take, a line each.")
       .def_property_readonly(
           "contacts", &contacts_of,
           "(T, 2) probability that the left and the right foot are on the ground.")

@@ -27,7 +27,7 @@ MODULES = (
     ("database",),
     ("reconstruction",),
     ("retrieval",),
-    ("tautges2011", "path_regression", "liu2011"),
+    ("tautges2011", "path_regression", "liu2011", "eom2014"),
     ("methods",),
 )
 """The modules of the core, lowest first; those of one level do not know each other."""

@@ -69,6 +69,7 @@ def test_the_commands_work_in_their_order(
     monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path / "runtime"))
     shutil.copytree(library, tmp_path / "mocap")
     shutil.copy(performance, tmp_path / "clip.bvh")
+    shutil.copy(library / "ada_walk_01.bvh", tmp_path / "walk.bvh")
     run = []
     for block in blocks():
         if any("calibrate" in words for words in block.commands):

@@ -34,6 +34,7 @@ from ..files import remove_folder
 from ..methods import DEFAULT_METHOD, Experiment, method_info, methods, renamed_preset
 from ..workers import cluster
 from .console import ProgressCallback, print_table, progress_bar, warn, write_json
+from .evaluated_files import chosen_pairs, with_files
 from .options import (
     PAPER_SITES,
     FilePath,
@@ -89,6 +90,10 @@ def _simulation_options(command: Callable[..., Any]) -> Callable[..., Any]:
 @click.option(
     "--tests", metavar="GLOB", help="Files to test; by default one for each actor and class."
 )
+@click.option(
+    "--train", "training", metavar="GLOB",
+    help="Files that the database and models have, in place of the scenario's; with --tests.",
+)  # fmt: skip
 @click.option("--json", "json_path", type=OutputPath(), help="Write all results as JSON.")
 @click.option("--plots", type=FilePath, help="Write plots of the errors to this folder.")
 @click.option(
@@ -120,6 +125,7 @@ def evaluate(
     source: Path,
     scenario: int,
     tests: str | None,
+    training: str | None,
     json_path: Path | None,
     plots: Path | None,
     names: tuple[str, ...],
@@ -144,7 +150,7 @@ def evaluate(
     if scheduler is not None and cache is None:
         raise click.UsageError("Missing option '--cache': workers find the database there.")
     names, presets = _renamed(names, presets)
-    common = Settings(scenario, tests=tests, **simulation)
+    common = Settings(scenario, tests=tests, pairs=chosen_pairs(training, tests), **simulation)
     if paper or experiments:
         runs = _comparisons(names, experiments, common)
     else:
@@ -170,6 +176,8 @@ def _evaluated(
         _database(source, cache, fps, progress) as database,
         executor as workers,
     ):
+        if len(runs) > 1:
+            runs = with_files(database, runs)
         return [
             (title, run_evaluation(database, source, run, progress, workers)) for title, run in runs
         ]
@@ -303,9 +311,14 @@ def _show(title: str, found: Evaluation) -> None:
         "Errors in cm.\n"
     )
     print_table(_summary(found))
+    parts = {
+        method: found.part_errors_cm(method)
+        | {"frames under 5 cm (%)": 100.0 * found.share_of_close_frames(method)}
+        for method in found.methods
+    }
     classes = {method: found.class_errors_cm(method) for method in found.methods}
     joints = {method: found.joint_errors_cm(method) for method in found.methods}
-    for kind, errors in (("class", classes), ("joint", joints)):
+    for kind, errors in (("part", parts), ("class", classes), ("joint", joints)):
         click.echo()
         print_table(_breakdown(kind, errors))
     for method in found.methods:

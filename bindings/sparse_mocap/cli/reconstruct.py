@@ -218,10 +218,13 @@ def _report(
 
 def _print_summary(output: Path, solved: Reconstruction, database: MotionDatabase | None) -> None:
     late = solved.latency_s
+    for note in solved.notes:
+        click.echo(note)
+    known = "model" if database is None else "motion database"
     way = "best quality" if late is None else f"live quality, {1000.0 * late:.0f} ms delay"
     click.echo(
-        f"{output}: {solved.motion.num_frames} frames, {way}; sensors match the motion "
-        f"database: {match(solved, database)}"
+        f"{output}: {solved.motion.num_frames} frames, {way}; sensors match the {known}: "
+        f"{match(solved, database)}"
     )
     quality = quality_of(solved, database)
     if quality is None or not quality.advice:

@@ -19,6 +19,9 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 CM = 100.0
+LOWER_BODY = slice(1, 7)
+"""Hips, knees and ankles among the joints of the standard skeleton, which begins at the root."""
+UPPER_BODY = slice(7, 21)
 
 
 def interpolated(times_s: Floats, values: Floats, wanted_s: Floats) -> Floats:

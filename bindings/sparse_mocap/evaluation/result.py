@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .metrics import CM
+from .metrics import CM, LOWER_BODY, UPPER_BODY, frame_errors
 from .movement import DRIFT_AFTER_S, Movement
 
 __all__ = ["ClipResult", "Evaluation", "TestClip", "clip_result"]
@@ -18,6 +18,7 @@ Floats = NDArray[np.float64]
 
 HISTOGRAM_BIN_CM = 0.5
 JUMP_CM = 50.0
+CLOSE_CM = 5.0
 FORMAT_VERSION = 1
 """Of the evaluation's JSON."""
 
@@ -39,6 +40,10 @@ class ClipResult:
     """What the reconstruction says of itself; None of baselines."""
     euler_errors_deg: Floats | None = None
     """(T,) mean over the joints' Euler angles; None where only positions are known."""
+    upper_body_cm: float = float("nan")
+    """Mean over the frames of the RMS over the joints above the hips."""
+    lower_body_cm: float = float("nan")
+    """The same of hips and legs."""
 
     @property
     def mean_angle_deg(self) -> float | None:
@@ -99,6 +104,24 @@ class Evaluation:
         """Returns each joint's error, a mean over the tests."""
         stacked = np.array([test.results[method].joint_errors_cm for test in self.tests])
         return dict(zip(self.joint_names, stacked.mean(axis=0).tolist(), strict=True))
+
+    def part_errors_cm(self, method: str) -> dict[str, float]:
+        """Returns the errors of parts of the body, means over the tests.
+
+        Per axis is the RMS over joints and axes, in place of distances in space.
+        """
+        results = [test.results[method] for test in self.tests]
+        full = float(np.mean([result.mean_cm for result in results]))
+        return {
+            "full body": full,
+            "upper body": float(np.mean([result.upper_body_cm for result in results])),
+            "lower body": float(np.mean([result.lower_body_cm for result in results])),
+            "full body, per axis": full / float(np.sqrt(3.0)),
+        }
+
+    def share_of_close_frames(self, method: str) -> float:
+        """Returns the share of all tests' frames with an error of less than 5 cm."""
+        return float(np.mean(self.frame_errors_cm(method) < CLOSE_CM))
 
     def class_errors_cm(self, method: str) -> dict[str, float]:
         """Returns the error in each class, a mean over its tests."""
@@ -229,6 +252,8 @@ class Evaluation:
             "movement": self.movement(method),
             "jumps": self.jumps(method),
             "warnings": self.warnings(method),
+            "part_errors_cm": self.part_errors_cm(method),
+            "share_of_frames_under_5_cm": self.share_of_close_frames(method),
             "class_errors_cm": self.class_errors_cm(method),
             "classes": {name: self.of_class(name).moving(method) for name in self.classes},
             "joint_errors_cm": self.joint_errors_cm(method),
@@ -281,6 +306,8 @@ def clip_result(
 ) -> ClipResult:
     """Returns the result with errors in cm: of the joints (T, J) and of the frames (T,)."""
     angles = None if angle_errors_deg is None else angle_errors_deg.mean(axis=0)
+    upper = CM * float(frame_errors(errors_m[:, UPPER_BODY]).mean())
+    lower = CM * float(frame_errors(errors_m[:, LOWER_BODY]).mean())
     return ClipResult(
         CM * frame_errors_m,
         CM * errors_m.mean(axis=0),
@@ -289,6 +316,8 @@ def clip_result(
         movement,
         match,
         euler_errors_deg,
+        upper,
+        lower,
     )
 
 

@@ -66,6 +66,7 @@ Reconstruction reconstruct(std::span<const SensorRecording> take, std::vector<Se
     out.readings = readings_of(take, std::move(sensors),
                                settings_for(*method, request, GravityAverage::whole_take));
     out.estimates = method->solve(out.readings, progress);
+    out.notes = method->notes();
     return out;
   }
   const auto method = make_live_method(entry, request.settings, context);
@@ -74,6 +75,7 @@ Reconstruction reconstruct(std::span<const SensorRecording> take, std::vector<Se
   out.latency_s = method->latency_s() + settings.filter.reach_s();
   out.readings = readings_of(take, std::move(sensors), settings);
   out.estimates = solve_live(*method, out.readings, progress);
+  out.notes = method->notes();
   return out;
 }
 

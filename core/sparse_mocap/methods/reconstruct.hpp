@@ -37,6 +37,7 @@ struct Reconstruction {
   std::vector<Sensor> sensors;      // with the channels that were used
   std::vector<Reading> readings;
   std::vector<PoseEstimate> estimates;  // one a reading
+  std::vector<std::string> notes;       // what the method says of the take, a line each
 
   Motion motion() const { return to_motion(estimates, skeleton, rate_hz); }
 };

@@ -49,6 +49,7 @@ class BoundedLive : public LiveMethod {
   const Skeleton& skeleton() const override { return method_->skeleton(); }
   double rate_hz() const override { return method_->rate_hz(); }
   GaussianFilter reading_filter() const override { return method_->reading_filter(); }
+  std::vector<std::string> notes() const override { return method_->notes(); }
   double latency_s() const override { return method_->latency_s(); }
   double history_s() const override { return method_->history_s(); }
 
@@ -80,6 +81,7 @@ class BoundedWholeTake : public WholeTakeMethod {
   const Skeleton& skeleton() const override { return method_->skeleton(); }
   double rate_hz() const override { return method_->rate_hz(); }
   GaussianFilter reading_filter() const override { return method_->reading_filter(); }
+  std::vector<std::string> notes() const override { return method_->notes(); }
 
   std::vector<PoseEstimate> solve(const std::vector<Reading>& take,
                                   const Progress& progress) override {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "sparse_mocap/base/progress.hpp"
@@ -21,6 +22,8 @@ class Method {
   virtual double rate_hz() const = 0;            // of the readings it takes and the poses it gives
   // What the readings it takes are low-passed by: as those of a database, unless it says otherwise.
   virtual GaussianFilter reading_filter() const { return kReadingFilter; }
+  // What it found out about the performance that people should know, a line each.
+  virtual std::vector<std::string> notes() const { return {}; }
 };
 
 // Answers readings as they come.

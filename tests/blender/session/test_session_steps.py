@@ -104,7 +104,7 @@ def test_progress_can_stop_a_reconstruction(files):
 
 def test_menus_list_what_the_core_knows():
     names = [name for name, _, _ in method_items()]
-    assert names == ["path_regression", "tautges2011", "liu2011"]
+    assert names == ["path_regression", "tautges2011", "liu2011", "eom2014"]
     names = [name for name, _, _ in option_items("path_regression")]
     assert "num_paths" in names
     assert all("(" in text for _, _, text in option_items("tautges2011"))

@@ -106,6 +106,7 @@ TEST(Registry, ListsWhatItKnowsWhenAskedForSomethingElse) {
   for (const auto& method : methods()) names += (names.empty() ? "" : ", ") + method.info.name;
   EXPECT_EQ(complaint([] { find_method("magic"); }), "unknown method 'magic'; known are " + names);
   for (const auto& method : methods()) {
+    if (method.info.needs_model || method.info.needs_body) continue;
     const auto preset = refusal(method, {"fancy", {}}, context_for(method));
     EXPECT_NE(preset.find("'fancy'"), std::string::npos) << preset;
     for (const auto& known : method.info.presets)

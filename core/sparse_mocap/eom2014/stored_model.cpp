@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cstdint>
+
+#include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/eom2014/trained_model.hpp"
+
+namespace sparse_mocap::eom2014 {
+namespace {
+
+constexpr int kVersion = 1;  // of what a model holds
+
+[[noreturn]] void refuse(const Model& model, const std::string& problem) {
+  throw FormatError({model.path}, problem, "train it again with this version");
+}
+
+void store(const std::string& name, const Perceptron& perceptron, Model& model) {
+  model.set(name + ".W1", perceptron.W1);
+  model.set(name + ".b1", perceptron.b1);
+  model.set(name + ".W2", perceptron.W2);
+  model.set(name + ".b2", perceptron.b2);
+}
+
+Perceptron perceptron_in(const Model& model, const std::string& name, Eigen::Index num_inputs,
+                         Eigen::Index num_outputs) {
+  Perceptron out;
+  out.W1 = model.matrix<double>(name + ".W1", {}, num_inputs);
+  out.b1 = model.vector<double>(name + ".b1", out.W1.rows());
+  out.W2 = model.matrix<double>(name + ".W2", num_outputs, out.W1.rows());
+  out.b2 = model.vector<double>(name + ".b2", num_outputs);
+  return out;
+}
+
+void store(const std::string& name, const SiteModel& site, Model& model) {
+  model.set(name + ".readings", site.readings);
+  model.set(name + ".level_slope", site.recognition.level_slope);
+  store(name + ".perceptron", site.perceptron, model);
+  for (std::size_t p = 0; p < site.recognition.phases.size(); ++p) {
+    const std::string own = name + "." + std::string(name_of(site.recognition.phases[p]));
+    const HiddenMarkovModel& hmm = site.recognition.models[p];
+    model.set(own + ".transition", hmm.transition);
+    for (std::size_t c = 0; c < hmm.emission.size(); ++c)
+      model.set(own + ".emission" + std::to_string(c), hmm.emission[c]);
+    store(own + ".perceptron", site.of_each_phase[p], model);
+  }
+}
+
+void require_probabilities(const Model& model, const std::string& name, const Eigen::MatrixXd& p) {
+  if (p.minCoeff() < 0.0 || ((p.rowwise().sum().array() - 1.0).abs() > 1e-6).any())
+    refuse(model, "the rows of '" + name + "' are no probabilities");
+}
+
+HiddenMarkovModel hmm_in(const Model& model, const std::string& name) {
+  HiddenMarkovModel out;
+  const HmmSettings settings;
+  out.transition =
+      model.matrix<double>(name + ".transition", settings.num_states, settings.num_states);
+  require_probabilities(model, name + ".transition", out.transition);
+  for (int c = 0; c < 6; ++c) {
+    const std::string channel = name + ".emission" + std::to_string(c);
+    out.emission.emplace_back(
+        model.matrix<double>(channel, settings.num_states, settings.num_symbols));
+    require_probabilities(model, channel, out.emission.back());
+    if (out.emission.back().minCoeff() <= 0.0) refuse(model, "'" + channel + "' holds a zero");
+  }
+  return out;
+}
+
+SiteModel site_in(const Model& model, int index, Eigen::Index num_frames, Eigen::Index dimensions,
+                  int window) {
+  const std::string name(all_sites().at(static_cast<std::size_t>(index)).name);
+  const Eigen::Index num_inputs = 6 * (2 * window + 1);
+  SiteModel out;
+  out.site = index;
+  out.readings = model.matrix<double>(name + ".readings", num_frames, 6);
+  out.scale = ReadingScale::of(out.readings);
+  out.recognition.level_slope = model.vector<double>(name + ".level_slope", 6).transpose();
+  out.perceptron = perceptron_in(model, name + ".perceptron", num_inputs, dimensions);
+  for (int p = 0; p < kNumPhases; ++p) {
+    const auto phase = static_cast<Phase>(p);
+    const std::string own = name + "." + std::string(name_of(phase));
+    if (!model.tensors.contains(own + ".transition")) continue;
+    out.recognition.phases.push_back(phase);
+    out.recognition.models.push_back(hmm_in(model, own));
+    out.of_each_phase.push_back(perceptron_in(model, own + ".perceptron", num_inputs, dimensions));
+  }
+  if (out.recognition.phases.empty()) refuse(model, "the model has no phases of " + name);
+  return out;
+}
+
+std::vector<int> begins_in(const Model& model, Eigen::Index num_frames) {
+  const auto stored = model.vector<std::int32_t>("sequence_begins");
+  std::vector<int> begins(stored.begin(), stored.end());
+  for (std::size_t s = 0; s < begins.size(); ++s) {
+    const Eigen::Index end = s + 1 < begins.size() ? begins[s + 1] : num_frames;
+    if (begins[s] < 0 || end - begins[s] < 2 || (s == 0 && begins[s] != 0))
+      refuse(model, "'sequence_begins' does not divide its frames");
+  }
+  if (begins.empty()) refuse(model, "'sequence_begins' is empty");
+  return begins;
+}
+
+MotionModel motion_in(const Model& model, const std::vector<int>& begins, int dimensions) {
+  MotionData data;
+  data.poses = model.matrix<double>("poses", {}, kNumPoseChannels);
+  const Eigen::Index n = data.poses.rows();
+  data.velocities = model.matrix<double>("velocities", n - static_cast<Eigen::Index>(begins.size()),
+                                         kNumVelocityChannels);
+  for (std::size_t s = 0; s < begins.size(); ++s) {
+    const Eigen::Index end = s + 1 < begins.size() ? begins[s + 1] : n;
+    for (int t = begins[s] + 1; t < end; ++t) data.steps.push_back(t);
+  }
+  Latent latent;
+  latent.X = model.matrix<double>("latent", n, dimensions);
+  latent.pose.alpha = model.vector<double>("alpha", 3);
+  latent.velocity.beta = model.vector<double>("beta", 4);
+  if (latent.pose.alpha.minCoeff() <= 0.0 || latent.velocity.beta.minCoeff() <= 0.0)
+    refuse(model, "'alpha' and 'beta' are positive");
+  return {std::move(data), std::move(latent)};
+}
+
+}  // namespace
+
+Model stored(const TrainedModel& trained, const Config& config) {
+  Model model{"eom2014", kVersion, training_options(config), {}, {}};
+  model.metadata["log_posterior"] = std::to_string(trained.motion.log_posterior());
+  const StandardBones bones = bones_of(trained.skeleton);
+  Eigen::MatrixX3d rows(kNumStandardJoints, 3);
+  for (Eigen::Index j = 0; j < rows.rows(); ++j)
+    rows.row(j) = bones[static_cast<std::size_t>(j)].transpose();
+  model.set("bones", rows);
+  Eigen::Matrix<std::int32_t, Eigen::Dynamic, 1> begins(trained.begins.size());
+  std::copy(trained.begins.begin(), trained.begins.end(), begins.begin());
+  model.set("sequence_begins", begins);
+  model.set("poses", trained.motion.data().poses);
+  model.set("velocities", trained.motion.data().velocities);
+  model.set("latent", trained.motion.latent().X);
+  model.set("alpha", trained.motion.latent().pose.alpha);
+  model.set("beta", trained.motion.latent().velocity.beta);
+  for (const auto& site : trained.sites)
+    store(std::string(all_sites().at(static_cast<std::size_t>(site.site)).name), site, model);
+  return model;
+}
+
+TrainedModel restored(const Model& model, const Config& config) {
+  if (model.method != "eom2014")
+    refuse(model, "is a model of '" + model.method + "', not of 'eom2014'");
+  if (model.version > kVersion) refuse(model, "was made by a newer version");
+  const auto bones = model.matrix<double>("bones", kNumStandardJoints, 3);
+  StandardBones lengths;
+  for (Eigen::Index j = 0; j < bones.rows(); ++j)
+    lengths[static_cast<std::size_t>(j)] = bones.row(j).transpose();
+  const Eigen::Index n = model.matrix<double>("poses", {}, kNumPoseChannels).rows();
+  auto begins = begins_in(model, n);
+  MotionModel motion = motion_in(model, begins, config.latent_dimensions);
+  std::vector<SiteModel> sites;
+  for (int index = 0; index < static_cast<int>(all_sites().size()); ++index)
+    if (model.tensors.contains(std::string(all_sites()[static_cast<std::size_t>(index)].name) +
+                               ".readings"))
+      sites.push_back(site_in(model, index, n, config.latent_dimensions, config.window_frames));
+  if (sites.empty()) refuse(model, "the model has readings of no site");
+  return {make_standard_skeleton(lengths), std::move(begins), std::move(motion), std::move(sites)};
+}
+
+}  // namespace sparse_mocap::eom2014
