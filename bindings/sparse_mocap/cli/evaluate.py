@@ -73,9 +73,10 @@ def _simulation_options(command: Callable[..., Any]) -> Callable[..., Any]:
     gyroscopes = click.option(
         "--gyroscopes", is_flag=True, help="Also simulate gyroscopes, and use them."
     )
+    decorated: Callable[..., Any] = with_simulation
     for option in (seed_option, noise_option, sites, channels_option, gyroscopes):
-        with_simulation = option(with_simulation)
-    return with_simulation
+        decorated = option(decorated)
+    return decorated
 
 
 @click.command()

@@ -218,7 +218,7 @@ noise_option: Decorator = click.option(
 )  # fmt: skip
 
 
-class _Channels(click.ParamType):
+class _Channels(click.ParamType):  # type: ignore[type-arg]
     """What simulated sensors give, separated by commas."""
 
     name = "channels"
