@@ -32,6 +32,7 @@ PHASES = tuple(
 @pytest.fixture(scope="module")
 def performance(tmp_path_factory):
     """A take of the guided movements, and how its sensors are turned."""
+    pytest.importorskip("scipy", reason="the performance is made with SciPy")
     return planted(tmp_path_factory.mktemp("planted"))
 
 

@@ -35,7 +35,7 @@ def test_names_of_actions_become_names_of_files_on_windows():
     for name in changed:
         made = PureWindowsPath(file_name(name))
         assert made.name == file_name(name) != name
-        assert not made.is_reserved()
+        assert made.name.partition(".")[0].lower() not in ("nul", "aux")
         assert not set(made.name) & set('<>:"/\\|?*\t')
         assert made.name[-1] not in " ."
     assert file_name("Armature|Scene") == "Armature_Scene"
