@@ -58,7 +58,7 @@ note_tested_modules() {
 }
 
 test_python_on_wheel() {
-  export PYTHONPATH="$UNPACKED_WHEEL"
+  export PYTHONPATH="$UNPACKED_WHEEL" SPARSE_MOCAP_TEST_PATH="$UNPACKED_WHEEL"
   test_python
 }
 
