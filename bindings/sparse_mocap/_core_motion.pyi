@@ -71,6 +71,8 @@ class Motion:
         """(T, J, 3) m, the joints' ends; frame: 'heading' (standard skeleton), 'root', 'world'."""
     def pivot_positions(self) -> Floats:
         """(T, J, 3) m, world, what the joints turn about."""
+    def without_extremities(self) -> Motion:
+        """The motion of the 21 standard joints alone; one of another skeleton as it is."""
     def resampled(self, rate_hz: float) -> Motion:
         """The motion sampled at a new rate: rotations by slerp, positions by interpolation.
 

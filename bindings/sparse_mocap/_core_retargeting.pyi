@@ -19,6 +19,9 @@ class SkeletonMapping:
     def joints(self) -> dict[str, str]:
         """The rig's joint for each standard joint that it has."""
     @property
+    def extremities(self) -> dict[str, str]:
+        """The rig's joint for each of feet, toes and hands that it has."""
+    @property
     def turned_joints(self) -> list[str]:
         """The rig's joints that to_rig turns; the others keep their rest."""
     @property
@@ -97,6 +100,12 @@ def standard_motion(
     motion: Motion, skeleton: Skeleton | None = None, by_hand: dict[str, str] = ...
 ) -> tuple[Motion, list[str]]:
     """Returns what map_skeleton and then to_standard return. Raises MappingError."""
+
+def with_extremities(skeleton: Skeleton) -> Skeleton:
+    """A standard skeleton with feet, toes and hands after its 21 joints.
+
+    Raises ValueError for another skeleton.
+    """
 
 def standard_joint_names() -> list[str]:
     """Returns the standard skeleton's 21 joints, the root first."""

@@ -63,6 +63,7 @@ class Inspection:
             "found_by": self.found_by,
             "unit_scale": mapping.unit_scale if mapping else None,
             "mapping": mapping.joints if mapping else {},
+            "extremities": mapping.extremities if mapping else {},
             "limb_errors_deg": {
                 limb: {"mean": mean, "worst": worst}
                 for limb, (mean, worst) in self.limb_errors_deg.items()

@@ -9,13 +9,21 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._core import standard_joint_names
 from .files import write_text
 from .table_errors import TableError, read_lines
 
-__all__ = ["position_header", "position_row", "read_positions", "write_positions"]
+__all__ = ["num_written", "position_header", "position_row", "read_positions", "write_positions"]
 
 Floats = NDArray[np.float64]
 Path = str | os.PathLike[str]
+
+
+def num_written(joint_names: Sequence[str], extremities: bool) -> int:
+    """How many of a skeleton's joints are written: feet, toes and hands only when asked for."""
+    standard = standard_joint_names()
+    has_more = list(joint_names[: len(standard)]) == list(standard)
+    return len(standard) if has_more and not extremities else len(joint_names)
 
 
 def write_positions(

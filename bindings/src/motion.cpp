@@ -4,6 +4,7 @@
 #include "sparse_mocap/formats/acclaim_writer.hpp"
 #include "sparse_mocap/formats/bvh.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
+#include "sparse_mocap/motion/extremities.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 #include "sparse_mocap/motion/standard_skeleton.hpp"
 
@@ -124,7 +125,8 @@ PositionFrame frame_named(const std::string& name) {
 
 py::array_t<double> positions_of(const Motion& motion, const std::string& frame_name) {
   const PositionFrame frame = frame_named(frame_name);
-  if (frame == PositionFrame::heading && motion.skeleton.num_joints() != kNumStandardJoints)
+  if (frame == PositionFrame::heading && !has_extremities(motion.skeleton) &&
+      motion.skeleton.num_joints() != kNumStandardJoints)
     throw py::value_error("the heading frame needs a motion on the standard skeleton");
   Eigen::MatrixXd columns;
   {
@@ -259,6 +261,9 @@ void bind_motion_class(py::module_& m) {
       .def("joint_positions", &positions_of, py::arg("frame") = "world",
            "(T, J, 3) m, the joints' ends; frame: 'heading' (standard skeleton), 'root', 'world'.")
       .def("pivot_positions", &pivots_of, "(T, J, 3) m, world, what the joints turn about.")
+      .def(
+          "without_extremities", [](const Motion& motion) { return without_extremities(motion); },
+          "The motion of the 21 standard joints alone; one of another skeleton as it is.")
       .def("resampled", &resampled, py::arg("rate_hz"), release(),
            R"doc(The motion sampled at a new rate: rotations by slerp, positions by interpolation.
 

@@ -26,6 +26,14 @@ struct Mapping {
     return joint < 0 ? "" : rig.joint(joint).name;
   }
 
+  std::map<std::string, std::string> extremities() const {
+    std::map<std::string, std::string> names;
+    for (std::size_t e = 0; e < found.extremities.size(); ++e)
+      if (const int joint = found.extremities[e].joint; joint >= 0)
+        names.emplace(extremity_names()[e], rig.joint(joint).name);
+    return names;
+  }
+
   std::vector<std::string> turned() const {
     std::vector<std::string> names;
     for (const int joint : turned_joints(found)) names.push_back(rig.joint(joint).name);
@@ -113,6 +121,8 @@ void bind_mapping_class(py::module_& m) {
 A rig is any skeleton of a human body: of a motion file or of an animator's character.)doc")
       .def_property_readonly("joints", &Mapping::joints,
                              "The rig's joint for each standard joint that it has.")
+      .def_property_readonly("extremities", &Mapping::extremities,
+                             "The rig's joint for each of feet, toes and hands that it has.")
       .def_property_readonly("turned_joints", &Mapping::turned,
                              "The rig's joints that to_rig turns; the others keep their rest.")
       .def_property_readonly(
@@ -188,6 +198,11 @@ by their shape. Raises MappingError when it is not a human body.)doc");
       },
       py::arg("motion"), py::arg("skeleton") = py::none(), py::arg("by_hand") = JointNames(),
       release(), "Returns what map_skeleton and then to_standard return. Raises MappingError.");
+  m.def("with_extremities", py::overload_cast<const Skeleton&>(&with_extremities),
+        py::arg("skeleton"),
+        R"doc(A standard skeleton with feet, toes and hands after its 21 joints.
+
+Raises ValueError for another skeleton.)doc");
   m.def(
       "standard_joint_names",
       [] {

@@ -51,6 +51,21 @@ def test_anyone_can_open_the_file(database: MotionDatabase, database_path: Path,
     np.testing.assert_array_equal(expected, array)
 
 
+def test_numbers_are_kept_as_finely_as_they_fit(
+    database: MotionDatabase, database_path: Path
+) -> None:
+    """In 16 bits, the scale being a power of two."""
+    public = load_file(database_path)
+    scales = [name for name in public if name.endswith("/scale")]
+    assert len(scales) > 10
+    for name in scales:
+        values, mantissas = public[name.removesuffix("/scale")], np.frexp(public[name])[0]
+        assert (mantissas == 0.5).all()
+        for clip, scale in zip(database.clips, public[name][:, 0], strict=True):
+            largest = int(np.abs(values[clip.begin : clip.end].astype(int)).max())
+            assert largest >= 2**14 or scale <= 2.0**-20, name
+
+
 def test_the_file_says_what_it_is(database_path: Path) -> None:
     with safe_open(database_path, "numpy") as file:
         metadata = file.metadata()

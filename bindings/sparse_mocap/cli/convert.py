@@ -13,12 +13,13 @@ from .. import (
     MotionDatabase,
     read_motion,
     to_standard,
+    with_extremities,
     write_acclaim,
     write_bvh,
     write_positions,
 )
 from .console import warn
-from .options import FilePath, check_ending, frame_option, reading_options
+from .options import FilePath, check_ending, extremities_option, frame_option, reading_options
 
 __all__ = ["convert"]
 
@@ -37,23 +38,25 @@ __all__ = ["convert"]
 )  # fmt: skip
 @frame_option
 @click.option("--fps", type=float, help="Resample to this many frames per second.")
+@extremities_option
 @reading_options
 def convert(
     clip: Path,
     output: Path,
     skeleton: str,
     frame: str,
+    extremities: bool,
     fps: float | None,
     reading: dict[str, Any],
 ) -> None:
     """Converts a motion file: .bvh, .amc, .npz (SMPL, AMASS) or .mvnx."""
     ending = check_ending(output, ".bvh", ".amc", ".csv")
     motion, warnings = read_motion(clip, **reading)
-    if skeleton != "own":
-        motion, more = to_standard(motion, MotionDatabase(skeleton).skeleton)
-        warnings += more
-    elif ending == ".csv":
-        motion, more = to_standard(motion)
+    if skeleton != "own" or ending == ".csv":
+        target = None if skeleton == "own" else MotionDatabase(skeleton).skeleton
+        if extremities:
+            target = with_extremities(target or to_standard(motion)[0].skeleton)
+        motion, more = to_standard(motion, target)
         warnings += more
     if fps is not None:
         motion = motion.resampled(fps)

@@ -117,6 +117,13 @@ def _notes(inspection: Inspection) -> str:
     return "; ".join(" ".join(warning.split()) for warning in inspection.warnings)
 
 
+_RELAXED = {
+    "foot": "level while it stands, else at right angles to the shank",
+    "toes": "straight",
+    "hand": "hangs a little bent",
+}
+
+
 def _show_one(inspection: Inspection) -> None:
     if inspection.mapping is None:
         where = f"{inspection.path}: "
@@ -125,6 +132,9 @@ def _show_one(inspection: Inspection) -> None:
         mean, worst = inspection.limb_errors_deg.get(standard, (None, None))
         error = "" if mean is None else f"  mean {mean:.2f}°, worst {worst:.1f}°"
         click.echo(f"{standard:<10} {joint}{error}")
+    for extremity in ("lfoot", "ltoes", "lhand", "rfoot", "rtoes", "rhand"):
+        joint = inspection.mapping.extremities.get(extremity, "")
+        click.echo(f"{extremity:<10} {joint or 'not in the file: ' + _RELAXED[extremity[1:]]}")
 
 
 def _save(inspection: Inspection, save_mapping: Path | None, remember: bool) -> None:

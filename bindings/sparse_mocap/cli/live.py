@@ -27,6 +27,7 @@ from .options import (
     FilePath,
     OutputPath,
     body_option,
+    extremities_option,
     method_choice,
     method_option,
     model_option,
@@ -55,6 +56,7 @@ _MORE_SENSORS_S = 1.0  # how long to wait for further sensors after the first sa
     "--calibration", "calibration_path", type=FilePath, help="The sensors' calibration (.json)."
 )
 @click.option("--positions", type=OutputPath(), help="Also write the joint positions (.csv).")
+@extremities_option
 @click.option("--seconds", type=click.FloatRange(0.1), help="Stop after this time.")
 @click.option(
     "--attach", is_flag=False, flag_value=0, type=click.IntRange(min=0), metavar="[PID]",
@@ -75,6 +77,7 @@ def live(
     body_path: Path | None,
     calibration_path: Path | None,
     positions: Path | None,
+    extremities: bool,
     seconds: float | None,
     attach: int | None,
 ) -> None:
@@ -106,7 +109,8 @@ def live(
             body_of(body_path),
         )
         if positions is not None:
-            session.stream_to(stack.enter_context(positions.open("w", encoding="utf-8")))
+            file = stack.enter_context(positions.open("w", encoding="utf-8"))
+            session.stream_to(file, extremities)
         _watch(stack, client, session, seconds)
     click.echo(session.summary())
 

@@ -13,7 +13,7 @@ from .. import LiveReconstructor, MotionDatabase, PoseEstimate
 from ..calibration import Calibration
 from ..capture.client import CaptureClient
 from ..capture.errors import CaptureError
-from ..positions import position_header, position_row
+from ..positions import num_written, position_header, position_row
 from ..readings import measured_channels
 from ..report import LiveMatch
 from .options import MethodChoice
@@ -57,16 +57,19 @@ class LiveSession:
             body=body,
         )
         self._file: TextIO | None = None
+        self._num_written = 0  # joints
         self._begin_s: float | None = None
         self._live_match = LiveMatch(_NUM_POSES)
         self.num_poses = 0
         self.latencies_s: deque[float] = deque(maxlen=_NUM_POSES)
         self.step_s: deque[float] = deque(maxlen=_NUM_POSES)
 
-    def stream_to(self, file: TextIO) -> None:
+    def stream_to(self, file: TextIO, extremities: bool = False) -> None:
         """Writes the joint positions of each new pose, in the heading frame, to this file."""
         self._file = file
-        file.write(position_header(self._reconstructor.skeleton.names) + "\n")
+        names = self._reconstructor.skeleton.names
+        self._num_written = num_written(names, extremities)
+        file.write(position_header(names[: self._num_written]) + "\n")
 
     def advance(self) -> None:
         """Reads the samples that have arrived and reconstructs the poses that are due."""
@@ -101,7 +104,8 @@ class LiveSession:
         if self._begin_s is None:
             self._begin_s = estimate.time_s
         if self._file is not None:
-            row = position_row(estimate.time_s - self._begin_s, estimate.positions)
+            positions = estimate.positions[: self._num_written]
+            row = position_row(estimate.time_s - self._begin_s, positions)
             self._file.write(row + "\n")
 
 

@@ -211,6 +211,10 @@ frame_option: Decorator = click.option(
     " orientation removed, or world.",
 )  # fmt: skip
 
+extremities_option: Decorator = click.option(
+    "--extremities", is_flag=True, help="Write the positions of feet, toes and hands as well."
+)
+
 noise_option: Decorator = click.option(
     "--noise", type=click.Choice(list(noise_presets())), default="none", show_default=True,
     help="Quality of the simulated sensors: ideal, accelerometers of research or consumer grade, or"

@@ -20,6 +20,7 @@ from .. import (
 )
 from ..alignment import aligned
 from ..body_file import read_body
+from ..positions import num_written
 from ..calibration import Calibration
 from ..calibration_file import read_calibration
 from ..quality import quality_of
@@ -34,6 +35,7 @@ from .options import (
     Span,
     body_option,
     check_ending,
+    extremities_option,
     frame_option,
     method_choice,
     method_option,
@@ -68,6 +70,7 @@ __all__ = ["body_of", "model_of", "reconstruct", "require_given"]
 )  # fmt: skip
 @click.option("--positions", type=OutputPath(), help="Also write the joint positions (.csv).")
 @frame_option
+@extremities_option
 @click.option(
     "--json", "json_path", type=OutputPath(), help="Also write a report on every frame as JSON."
 )
@@ -92,6 +95,7 @@ def reconstruct(
     gyroscopes: bool,
     positions: Path | None,
     frame: str,
+    extremities: bool,
     json_path: Path | None,
     positions_along_bone: tuple[tuple[str, float], ...],
     calibration_path: Path | None,
@@ -123,7 +127,7 @@ def reconstruct(
             progress=progress,
         )
     write_bvh(output, solved.motion)
-    _write_positions(positions, solved, frame)
+    _write_positions(positions, solved, frame, extremities)
     if json_path is not None:
         write_json(json_path, _report(take, database, choice, offline, solved))
     warn([*_left_out(recorded, calibration), *unit_warnings(recorded)])
@@ -179,12 +183,16 @@ def model_of(choice: MethodChoice, path: Path | None, database: MotionDatabase |
     return None
 
 
-def _write_positions(path: Path | None, solved: Reconstruction, frame: str) -> None:
+def _write_positions(
+    path: Path | None, solved: Reconstruction, frame: str, extremities: bool
+) -> None:
     if path is None:
         return
     motion = solved.motion
-    positions = motion.joint_positions(frame)
-    write_positions(path, solved.readings.times_s, motion.skeleton.names, positions)
+    names = motion.skeleton.names
+    count = num_written(names, extremities)
+    positions = motion.joint_positions(frame)[:, :count]
+    write_positions(path, solved.readings.times_s, names[:count], positions)
 
 
 def _report(

@@ -227,7 +227,7 @@ class _Run:
         solved = self._solved(contender, performance, excluded)
         late = solved.latency_s
         self.latencies_ms[contender.label] = None if late is None else 1000.0 * late
-        motion, _ = to_standard(solved.motion, self.database.skeleton)
+        motion, _ = to_standard(solved.motion.without_extremities(), self.database.skeleton)
         return Estimate(
             contender.label,
             np.asarray(solved.readings.times_s),

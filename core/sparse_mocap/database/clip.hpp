@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
+
+#include "sparse_mocap/motion/extremities.hpp"
 
 namespace sparse_mocap {
 
@@ -23,6 +26,8 @@ struct Clip {
   // What was odd about the file: each kind of warning (numbers and names left out) and how often.
   // Empty for copies.
   std::map<std::string, int> warnings;
+  // Which of feet, toes and hands its file has, see extremity::Index.
+  std::array<bool, kNumExtremities> has_extremity{};
   bool is_mirrored = false;
   bool is_reversed = false;
   double tempo = 1.0;  // how much faster than performed
@@ -33,6 +38,10 @@ struct Clip {
   // Whether it is another clip mirrored, reversed or at another tempo.
   bool is_copy() const { return is_mirrored || is_reversed || tempo != 1.0; }
 };
+
+inline bool has_any_extremity(const Clip& clip) {
+  return clip.has_extremity != std::array<bool, kNumExtremities>{};
+}
 
 // One kind of skeleton among the sources: files whose joints have the same names and parents.
 struct SourceSkeleton {

@@ -69,7 +69,9 @@ class ClipMaker {
     add_reversed(clip, motion);
     if (!copies_.add_mirrored) return;
     clip.is_mirrored = true;
-    add_reversed(clip, mirrored(motion, standard_left_right()));
+    for (std::size_t left = 0, right = 3; left < 3; ++left, ++right)
+      std::swap(clip.has_extremity[left], clip.has_extremity[right]);
+    add_reversed(clip, mirrored(motion, left_right_with_extremities()));
   }
 
  private:
@@ -144,7 +146,7 @@ Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& ha
     stop_if_asked(stop);
     const SkeletonMapping mapping = map_as_chosen(read.motion, choice);
     std::vector<std::string> texts = mapping.warnings;
-    const Motion motion = to_standard(read.motion, mapping, standard, &texts);
+    const Motion motion = to_standard(read.motion, mapping, with_extremities(standard), &texts);
     out.faults = check_clip(read.motion, mapping, motion);
     for (const ClipFault& fault : out.faults)
       if (fault.is_refused || is_strict) throw FormatError({file.path}, fault.text);
@@ -152,6 +154,8 @@ Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& ha
     out.bones = mapping.bones;
     Clip clip = clip_of(file, hashes, read.motion);
     clip.skeleton = out.skeleton.id;
+    for (std::size_t e = 0; e < mapping.extremities.size(); ++e)
+      clip.has_extremity[e] = mapping.extremities[e].joint >= 0;
     for (const auto& warning : read.warnings) {
       out.warnings.push_back(warning.message());
       clip.warnings[kind_of_warning(warning.text)] += warning.count;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/database/database_content.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <list>
 #include <set>
@@ -31,6 +32,8 @@ class Arrays {
     add_packed("positions", [](const PackedRows& rows) { return &rows.positions; });
     add("root_motion", [](const PackedRows& rows) { return &rows.root_motion; });
     add("contacts", [](const PackedRows& rows) { return &rows.contacts; });
+    if (std::any_of(content.clips.begin(), content.clips.end(), has_any_extremity))
+      add_packed("extremities", [](const PackedRows& rows) { return &rows.extremities; });
     for (std::size_t s = 0; s < content.site_names.size(); ++s) {
       const auto add_of_site = [&](const char* name, PackedArray PackedSite::*member) {
         add_packed(site_array(content.site_names[s], name),
@@ -128,9 +131,16 @@ PackedArray packed_rows_of(const ScaledRows& rows, const Clip& clip) {
   return {rows.values().middleRows(clip.begin, clip.num_frames()), rows.scale(clip.begin)};
 }
 
+PackedArray extremity_rows_of(const MotionDatabase& database, const Clip& clip) {
+  if (database.extremities().rows() > 0) return packed_rows_of(database.extremities(), clip);
+  return packed(DatabaseRows::Rows(
+      DatabaseRows::Rows::Zero(clip.num_frames(), Eigen::Index{3 * kNumExtremities})));
+}
+
 PackedRows packed_rows_of(const MotionDatabase& database, const Clip& clip) {
   PackedRows rows{packed_rows_of(database.angles(), clip),
                   packed_rows_of(database.positions(), clip),
+                  extremity_rows_of(database, clip),
                   database.root_motion().middleRows(clip.begin, clip.num_frames()),
                   database.contacts().middleRows(clip.begin, clip.num_frames()),
                   {}};

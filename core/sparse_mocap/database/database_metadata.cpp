@@ -30,6 +30,13 @@ json skeleton_json(const Skeleton& skeleton) {
   return joints;
 }
 
+std::vector<std::string> names_of_extremities(const Clip& clip) {
+  std::vector<std::string> names;
+  for (std::size_t e = 0; e < clip.has_extremity.size(); ++e)
+    if (clip.has_extremity[e]) names.emplace_back(extremity_names()[e]);
+  return names;
+}
+
 json clip_json(const Clip& clip) {
   json entry{{"name", clip.name},
              {"actor", clip.actor},
@@ -51,6 +58,8 @@ json clip_json(const Clip& clip) {
   put("origin", clip.origin);
   put("license", clip.license);
   if (!clip.warnings.empty()) entry["warnings"] = clip.warnings;
+  const auto extremities = names_of_extremities(clip);
+  if (!extremities.empty()) entry["extremities"] = extremities;
   return entry;
 }
 
@@ -101,6 +110,9 @@ Clip clip_from(const json& entry) {
   clip.source_frames = entry.value("source_frames", 0);
   clip.source_rate_hz = entry.value("source_rate_hz", 0.0);
   clip.warnings = entry.value("warnings", std::map<std::string, int>());
+  const auto extremities = entry.value("extremities", std::set<std::string>());
+  for (std::size_t e = 0; e < clip.has_extremity.size(); ++e)
+    clip.has_extremity[e] = extremities.contains(std::string(extremity_names()[e]));
   return clip;
 }
 

@@ -8,6 +8,7 @@
 
 #include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/motion/contacts.hpp"
+#include "sparse_mocap/motion/extremities.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 #include "sparse_mocap/motion/standard_angles.hpp"
 #include "sparse_mocap/sensors/filter.hpp"
@@ -76,13 +77,28 @@ DatabaseRows::Rows root_motion_rows(const Motion& motion, const std::vector<doub
   return rows;
 }
 
+// Rotation vectors of feet, toes and hands.
+DatabaseRows::Rows extremity_rows(const Motion& motion) {
+  DatabaseRows::Rows rows =
+      DatabaseRows::Rows::Zero(motion.num_frames(), Eigen::Index{3 * kNumExtremities});
+  if (!has_extremities(motion.skeleton)) return rows;
+  for (int t = 0; t < motion.num_frames(); ++t)
+    for (int e = 0; e < kNumExtremities; ++e)
+      rows.row(t).segment<3>(3 * e) =
+          rotation_vector(motion.rotation(t, extremity_joint(e))).transpose().cast<float>();
+  return rows;
+}
+
 }  // namespace
 
 DatabaseRows database_rows(const Motion& standard_motion, double rate_hz) {
   Motion motion = resampled(standard_motion, rate_hz);
   const auto yaw = headings(motion);
   DatabaseRows rows;
-  rows.positions = joint_positions(motion, PositionFrame::heading).transpose().cast<float>();
+  rows.positions = joint_positions(motion, PositionFrame::heading)
+                       .topRows(3 * kNumStandardJoints)
+                       .transpose()
+                       .cast<float>();
   rows.contacts = foot_contacts(motion).transpose().cast<float>();
   rows.root_motion = root_motion_rows(motion, yaw);
   std::vector<double> wanted_s;
@@ -92,6 +108,7 @@ DatabaseRows database_rows(const Motion& standard_motion, double rate_hz) {
         Quat(yaw_rotation(yaw[static_cast<std::size_t>(t)])).conjugate() * motion.rotation(t, 0);
   }
   rows.angles = standard_angles(motion).transpose().cast<float>();
+  rows.extremities = extremity_rows(motion);
   fill_readings(standard_motion, wanted_s, rows);
   return rows;
 }

@@ -12,11 +12,13 @@ struct DatabaseRows {
   using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Rows angles, positions, root_motion, contacts;
   Rows specific_force_pivot, specific_force_end, angular_velocity, gravity_direction;
+  Rows extremities;  // zero where the motion has none
 
   int num_frames() const { return static_cast<int>(angles.rows()); }
 };
 
-// The rows of one clip: the motion, on a standard skeleton at its own rate, sampled at rate_hz.
+// The rows of one clip: the motion, on a standard skeleton (with extremities or without) at its own
+// rate, sampled at rate_hz.
 DatabaseRows database_rows(const Motion& standard_motion, double rate_hz);
 
 }  // namespace sparse_mocap

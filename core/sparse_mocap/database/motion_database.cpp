@@ -75,6 +75,8 @@ class DatabaseReader {
     new (&database_.root_motion_)
         FloatRows(mapped<float>("root_motion", root_motion_column::count, rows));
     new (&database_.contacts_) RowsView<std::uint8_t>(mapped<std::uint8_t>("contacts", 2, rows));
+    if (std::any_of(database_.clips().begin(), database_.clips().end(), has_any_extremity))
+      database_.extremities_ = scaled("extremities", 3 * kNumExtremities);
     for (const auto& site : database_.site_names()) {
       const auto of_site = [&](const char* name) { return scaled(site_array(site, name), 3); };
       database_.sites_.push_back({of_site("specific_force_pivot"), of_site("specific_force_end"),

@@ -63,6 +63,9 @@ class MotionDatabase {
   const ScaledRows& positions() const { return positions_; }     // m, heading frame, 3 x joints
   const FloatRows& root_motion() const { return root_motion_; }  // see root_motion_column
   const RowsView<std::uint8_t>& contacts() const { return contacts_; }  // left, right: 0 or 1
+  // Rotation vectors of feet, toes and hands in their parents (rad), in the order of
+  // extremity::Index, where Clip::has_extremity; zero elsewhere. No rows where no clip has any.
+  const ScaledRows& extremities() const { return extremities_; }
   // What the sensors of a site read; index in site_names.
   const SiteRows& site(std::size_t index) const { return sites_[index]; }
   int clip_index(int frame) const { return clip_of_row_[static_cast<std::size_t>(frame)]; }
@@ -95,7 +98,7 @@ class MotionDatabase {
   std::filesystem::path path_;
   DatabaseMetadata metadata_;
   std::vector<std::int32_t> clip_of_row_;
-  ScaledRows angles_, positions_;
+  ScaledRows angles_, positions_, extremities_;
   FloatRows root_motion_{nullptr, 0, 0};
   RowsView<std::uint8_t> contacts_{nullptr, 0, 0};
   std::vector<SiteRows> sites_;

@@ -53,6 +53,7 @@ PackedRows packed(const DatabaseRows& rows) {
   out.angles = packed(
       Rows(rows.angles.unaryExpr([](float angle) { return std::remainder(angle, kFullTurn); })));
   out.positions = packed(rows.positions);
+  out.extremities = packed(rows.extremities);
   out.root_motion = rows.root_motion;
   out.contacts = (rows.contacts.array() > 0.5F).cast<std::uint8_t>();
   const auto num_sites = static_cast<std::size_t>(rows.specific_force_pivot.cols() / 3);
@@ -68,6 +69,7 @@ DatabaseRows unpacked(const PackedRows& rows) {
   DatabaseRows out;
   out.angles = unpacked(rows.angles);
   out.positions = unpacked(rows.positions);
+  out.extremities = unpacked(rows.extremities);
   out.root_motion = rows.root_motion;
   out.contacts = rows.contacts.cast<float>();
   for (const auto& [target, member] :

@@ -32,7 +32,7 @@ struct PackedSite {
 
 // The rows of one clip, packed.
 struct PackedRows {
-  PackedArray angles, positions;
+  PackedArray angles, positions, extremities;
   DatabaseRows::Rows root_motion;
   Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> contacts;
   std::vector<PackedSite> sites;

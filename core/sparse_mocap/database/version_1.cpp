@@ -100,7 +100,8 @@ class Reader {
             of_clip(specific_force_pivot_),
             of_clip(specific_force_end_),
             of_clip(angular_velocity_),
-            of_clip(gravity_direction_)};
+            of_clip(gravity_direction_),
+            DatabaseRows::Rows::Zero(clip.num_frames(), Eigen::Index{3 * kNumExtremities})};
   }
 
   SafetensorsView further_content() const {

@@ -37,9 +37,10 @@ bool has_any(const Reading& reading) {
          is_there(reading.position) || is_there(reading.orientation);
 }
 
-Reconstruction begun(const Method& method, const MethodContext& context) {
+Reconstruction begun(const Method& method, const ExtremityTrack& extremities,
+                     const MethodContext& context) {
   Reconstruction out;
-  out.skeleton = method.skeleton();
+  out.skeleton = extremities.skeleton();
   out.rate_hz = method.rate_hz();
   out.sensors = context.sensors;
   return out;
@@ -62,19 +63,23 @@ Reconstruction reconstruct(std::span<const SensorRecording> take, std::vector<Se
   const MethodContext context = context_of(request, sensors);
   if (quality == Quality::best) {
     const auto method = make_whole_take_method(entry, request.settings, context);
-    Reconstruction out = begun(*method, context);
+    const ExtremityTrack extremities(method->skeleton(), method->rate_hz());
+    Reconstruction out = begun(*method, extremities, context);
     out.readings = readings_of(take, std::move(sensors),
                                settings_for(*method, request, GravityAverage::whole_take));
     out.estimates = method->solve(out.readings, progress);
+    extremities.complete(out.estimates);
     out.notes = method->notes();
     return out;
   }
   const auto method = make_live_method(entry, request.settings, context);
-  Reconstruction out = begun(*method, context);
+  ExtremityTrack extremities(method->skeleton(), method->rate_hz());
+  Reconstruction out = begun(*method, extremities, context);
   const auto settings = settings_for(*method, request, GravityAverage::causal);
   out.latency_s = method->latency_s() + settings.filter.reach_s();
   out.readings = readings_of(take, std::move(sensors), settings);
   out.estimates = solve_live(*method, out.readings, progress);
+  for (auto& estimate : out.estimates) extremities.complete(estimate);
   out.notes = method->notes();
   return out;
 }
@@ -86,6 +91,7 @@ LiveReconstructor::LiveReconstructor(std::vector<SensorInput> sensors,
                            context_of(request, used_channels(sensors, method_of(request).info)))),
       readings_(used_channels(std::move(sensors), method_of(request).info),
                 settings_for(*method_, request, GravityAverage::causal)),
+      extremities_(method_->skeleton(), method_->rate_hz()),
       largest_backlog_(static_cast<std::size_t>(largest_backlog)) {}
 
 std::vector<PoseEstimate> LiveReconstructor::advance(double now_s) {
@@ -94,6 +100,7 @@ std::vector<PoseEstimate> LiveReconstructor::advance(double now_s) {
     num_skipped_ += static_cast<int>(readings.size()) - 1;
     readings.erase(readings.begin(), readings.end() - 1);
     method_->reset();
+    extremities_.reset();
   }
   return solve(readings);
 }
@@ -101,6 +108,8 @@ std::vector<PoseEstimate> LiveReconstructor::advance(double now_s) {
 std::vector<PoseEstimate> LiveReconstructor::flush() {
   auto estimates = solve(readings_.flush());
   auto last = method_->flush();
+  for (auto& estimate : last) extremities_.complete(estimate);
+  extremities_.reset();
   std::move(last.begin(), last.end(), std::back_inserter(estimates));
   return estimates;
 }
@@ -109,7 +118,10 @@ std::vector<PoseEstimate> LiveReconstructor::solve(const std::vector<Reading>& r
   std::vector<PoseEstimate> estimates;
   for (const auto& reading : readings) {
     if (has_any(reading)) last_reading_s_ = reading.time_s;
-    if (auto estimate = method_->step(reading)) estimates.push_back(std::move(*estimate));
+    auto estimate = method_->step(reading);
+    if (!estimate) continue;
+    extremities_.complete(*estimate);
+    estimates.push_back(std::move(*estimate));
   }
   return estimates;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sparse_mocap/readings/reading_stream.hpp"
+#include "sparse_mocap/reconstruction/extremity_track.hpp"
 #include "sparse_mocap/reconstruction/method_info.hpp"
 
 namespace sparse_mocap {
@@ -31,7 +32,7 @@ struct ReconstructionRequest {
 
 // What became of a take.
 struct Reconstruction {
-  Skeleton skeleton;
+  Skeleton skeleton;  // the method's, with feet, toes and hands if it is a standard skeleton
   double rate_hz = 0.0;
   std::optional<double> latency_s;  // of a pose after its reading, low-pass included; none: best
   std::vector<Sensor> sensors;      // with the channels that were used
@@ -67,7 +68,7 @@ class LiveReconstructor {
   // The remaining ones, when the performance ends.
   std::vector<PoseEstimate> flush();
 
-  const Skeleton& skeleton() const { return method_->skeleton(); }
+  const Skeleton& skeleton() const { return extremities_.skeleton(); }
   double rate_hz() const { return method_->rate_hz(); }
   double latency_s() const { return method_->latency_s() + readings_.delay_s(); }
   double history_s() const { return method_->history_s(); }
@@ -80,6 +81,7 @@ class LiveReconstructor {
 
   std::unique_ptr<LiveMethod> method_;
   ReadingStream readings_;
+  ExtremityTrack extremities_;
   std::size_t largest_backlog_;
   int num_skipped_ = 0;
   double last_reading_s_ = -std::numeric_limits<double>::infinity();

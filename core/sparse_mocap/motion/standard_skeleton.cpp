@@ -96,7 +96,7 @@ Skeleton make_standard_skeleton(const StandardBones& bones) {
 }
 
 StandardBones bones_of(const Skeleton& standard_skeleton) {
-  if (standard_skeleton.num_joints() != kNumStandardJoints)
+  if (standard_skeleton.num_joints() < kNumStandardJoints)
     throw std::invalid_argument("bones_of: not a standard skeleton");
   StandardBones bones;
   for (std::size_t j = 0; j < bones.size(); ++j) bones[j] = standard_skeleton.joints()[j].bone;

@@ -6,6 +6,7 @@
 
 #include "sparse_mocap/path_regression/regression.hpp"
 #include "sparse_mocap/retrieval/diagnostics.hpp"
+#include "sparse_mocap/retrieval/extremity_vote.hpp"
 #include "sparse_mocap/retrieval/root_motion.hpp"
 #include "sparse_mocap/retrieval/standing_feet.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
@@ -84,6 +85,7 @@ RetrievedFrame FrameSolver::retrieve(const std::vector<Path>& paths, const Signa
   frame.target.inclination = inclination_target(database_->skeleton(), reading, signals_);
   frame.target.turning = turning_targets(reading, signals_);
   frame.target.root = root_rates(*database_, weighted);
+  frame.extremities = extremity_vote(*database_, weighted);
   frame.target.root.height_m = root_height_m(*database_, weighted, standing_heights_);
   frame.target.feet = feet(weighted, window);
   frame.diagnostics = retrieval_diagnostics(*database_, weighted, signals_, signal_rows_,

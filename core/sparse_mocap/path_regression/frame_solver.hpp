@@ -18,6 +18,7 @@ namespace sparse_mocap::path_regression {
 struct RetrievedFrame {
   FrameTarget target;
   Diagnostics diagnostics;
+  ExtremityVote extremities;
 };
 
 // What live and whole-take reconstruction do alike with a frame: search the database, and gather

@@ -58,8 +58,10 @@ PoseEstimate LiveReconstructor::solve_next() {
   frames_.push_back(std::move(start));
   targets_.push_back(std::move(retrieved.target));
   fit_.fit(frames_, targets_, frames_.size() - 1, solver_.config().max_iterations);
-  return to_estimate(frames_.back(), time_s, targets_.back().feet.certainty,
-                     std::move(retrieved.diagnostics));
+  PoseEstimate estimate = to_estimate(frames_.back(), time_s, targets_.back().feet.certainty,
+                                      std::move(retrieved.diagnostics));
+  estimate.extremities = retrieved.extremities;
+  return estimate;
 }
 
 }  // namespace sparse_mocap::path_regression

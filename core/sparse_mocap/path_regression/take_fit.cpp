@@ -99,7 +99,7 @@ FittedFrame start_of(const Skeleton& skeleton, double frame_time_s, const FrameT
 
 PoseEstimate to_estimate(const FittedFrame& frame, double time_s, const Eigen::Vector2d& contacts,
                          Diagnostics diagnostics) {
-  PoseEstimate estimate{time_s, {}, frame.root_position, contacts, std::move(diagnostics)};
+  PoseEstimate estimate{time_s, {}, frame.root_position, contacts, std::move(diagnostics), {}};
   for (const Mat3& R : frame.rotations) estimate.rotations.emplace_back(R);
   estimate.rotations[0] = Quat(yaw_rotation(frame.yaw_rad)) * estimate.rotations[0];
   return estimate;

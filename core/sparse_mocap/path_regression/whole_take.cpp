@@ -52,9 +52,11 @@ std::vector<PoseEstimate> WholeTakeReconstructor::fitted(
   TakeFit(skeleton(), 1.0 / rate_hz(), config.fit, num_threads_)
       .fit(frames, targets, 0, config.max_iterations);
   std::vector<PoseEstimate> estimates;
-  for (std::size_t t = 0; t < frames.size(); ++t)
+  for (std::size_t t = 0; t < frames.size(); ++t) {
     estimates.push_back(to_estimate(frames[t], take[t].time_s, targets[t].feet.certainty,
                                     std::move(retrieved[t].diagnostics)));
+    estimates.back().extremities = retrieved[t].extremities;
+  }
   return estimates;
 }
 

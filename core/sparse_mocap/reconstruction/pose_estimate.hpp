@@ -2,12 +2,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "sparse_mocap/base/conventions.hpp"
+#include "sparse_mocap/motion/extremities.hpp"
 #include "sparse_mocap/motion/motion.hpp"
 
 namespace sparse_mocap {
@@ -19,6 +21,14 @@ namespace sparse_mocap {
 //   clip, database_frame  the ones that the pose is closest to
 using Diagnostics = std::map<std::string, Eigen::VectorXd, std::less<>>;
 
+// What retrieved frames say of feet, toes and hands, in the order of extremity::Index.
+struct ExtremityVote {
+  std::array<Quat, kNumExtremities> R_parent_joint;
+  std::array<double, kNumExtremities> certainty{};  // the share of the frames that know it, 0 to 1
+
+  ExtremityVote() { R_parent_joint.fill(Quat::Identity()); }
+};
+
 // One reconstructed frame of a method's skeleton.
 struct PoseEstimate {
   double time_s = 0.0;                // of the reading that it belongs to
@@ -26,6 +36,7 @@ struct PoseEstimate {
   Vec3 root_position = Vec3::Zero();  // m, world
   Eigen::Vector2d contacts = Eigen::Vector2d::Zero();  // probability that left, right foot stand
   Diagnostics diagnostics;
+  ExtremityVote extremities{};  // what the method says of them, if its skeleton lacks them
 };
 
 // The estimates as a motion in the world.

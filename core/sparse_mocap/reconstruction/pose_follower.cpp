@@ -16,17 +16,6 @@ void relax(Value& offset, Value& velocity, double lag_s, double time_s) {
   velocity = left * (velocity - rate * time_s * pull);
 }
 
-Vec3 rotation_vector(Quat rotation) {
-  if (rotation.w() < 0.0) rotation.coeffs() = -rotation.coeffs();
-  const Eigen::AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
-}
-
-Quat exponential(const Vec3& vector) {
-  const double angle = vector.norm();
-  return angle > 0.0 ? Quat(Eigen::AngleAxisd(angle, vector / angle)) : Quat::Identity();
-}
-
 }  // namespace
 
 void PoseFollower::apply(PoseEstimate& estimate) {
@@ -42,7 +31,7 @@ void PoseFollower::apply(PoseEstimate& estimate) {
     Quat& wanted = estimate.rotations[j];
     Vec3 offset = rotation_vector(wanted.conjugate() * joints_[j].rotation);
     relax(offset, joints_[j].velocity_radps, lag_s_, frame_time_s_);
-    joints_[j].rotation = (wanted * exponential(offset)).normalized();
+    joints_[j].rotation = (wanted * rotation_of_vector(offset)).normalized();
     wanted = joints_[j].rotation;
   }
   double above = height_m_ - estimate.root_position.y();

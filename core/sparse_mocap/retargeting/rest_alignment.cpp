@@ -256,6 +256,13 @@ void align_rest_poses(const Skeleton& rig, const RestPose& rest, SkeletonMapping
     align_hand_with_forearm(lradius, lwrist, mapping.joint_mapping);
     align_hand_with_forearm(rradius, rwrist, mapping.joint_mapping);
   }
+  const auto world_wrist = [&](Index wrist) {
+    const auto& mapped = mapping.joint_mapping[wrist];
+    return mapped.empty() ? R_world_standard[wrist]
+                          : mapped_rotation(mapped, rest.transforms.R_world_joint);
+  };
+  mapping.extremities = map_extremities(rig, mapping.joints, bones, rest.transforms,
+                                        {world_wrist(lwrist), world_wrist(rwrist)});
   mapping.R_parent_joint_rest = rotations_in_parents(rig, rest.transforms);
   measure_bones(bones, rest.transforms, mapping);
 }

@@ -10,6 +10,7 @@
 
 #include "sparse_mocap/motion/motion.hpp"
 #include "sparse_mocap/motion/standard_skeleton.hpp"
+#include "sparse_mocap/retargeting/extremity_mapping.hpp"
 #include "sparse_mocap/retargeting/joint_mapping.hpp"
 
 namespace sparse_mocap {
@@ -19,6 +20,8 @@ struct SkeletonMapping {
   BodyJoints joints;
   // Which of the rig's joints turn each standard joint, with the rest poses aligned.
   JointMapping joint_mapping;
+  // Which of them turn feet, toes and hands.
+  ExtremityMapping extremities;
   // How each of the rig's joints is turned in its parent while the rig rests. Identity for rigs
   // that stand when all their angles are zero.
   std::vector<Mat3> R_parent_joint_rest;

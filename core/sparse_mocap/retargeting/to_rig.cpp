@@ -26,6 +26,16 @@ bool is_turned_by(const SkeletonMapping& mapping, int joint, int standard) {
   return (joint == pelvis) == (standard == standard_joint::root);
 }
 
+// Adds what turns the rig's feet, toes and hands: these alone, where the motion has them.
+void add_extremities(const SkeletonMapping& mapping,
+                     std::vector<std::vector<TurningBone>>& turning) {
+  for (int e = 0; e < kNumExtremities; ++e) {
+    const MappedJoint& mapped = mapping.extremities[at(e)];
+    if (mapped.joint < 0) continue;
+    turning[at(mapped.joint)] = {{extremity_joint(e), 1.0, mapped.R_joint_standard.transpose()}};
+  }
+}
+
 // The mapping seen from the rig: what turns each of its joints.
 std::vector<std::vector<TurningBone>> turning_bones(const SkeletonMapping& mapping,
                                                     const Skeleton& standard, int num_joints) {
@@ -39,6 +49,7 @@ std::vector<std::vector<TurningBone>> turning_bones(const SkeletonMapping& mappi
           {s, mapped.weight * length, mapped.R_joint_standard.transpose()});
     }
   }
+  if (has_extremities(standard)) add_extremities(mapping, turning);
   return turning;
 }
 
@@ -100,7 +111,7 @@ class ToRig {
 Motion to_rig(const Motion& motion, const SkeletonMapping& mapping, const Skeleton& rig) {
   if (mapping.R_parent_joint_rest.size() != rig.joints().size())
     throw std::invalid_argument("to_rig: the mapping was found for a rig with other joints");
-  if (motion.skeleton.num_joints() != kNumStandardJoints)
+  if (motion.skeleton.num_joints() != kNumStandardJoints && !has_extremities(motion.skeleton))
     throw std::invalid_argument("to_rig: the motion is not on a standard skeleton");
   Motion out;
   out.skeleton = rig;
@@ -115,6 +126,8 @@ std::vector<int> turned_joints(const SkeletonMapping& mapping) {
   for (int s = 0; s < kNumStandardJoints; ++s)
     for (const auto& mapped : mapping.joint_mapping[at(s)])
       if (is_turned_by(mapping, mapped.joint, s)) turned.insert(mapped.joint);
+  for (const auto& mapped : mapping.extremities)
+    if (mapped.joint >= 0) turned.insert(mapped.joint);
   return {turned.begin(), turned.end()};
 }
 

@@ -78,8 +78,9 @@ class ToStandard {
         standard_(standard),
         joint_mapping_(aligned_to(mapping, standard)),
         roots_(align_roots(mapping, standard)),
+        extremities_(mapping.extremities),
+        R_world_(static_cast<std::size_t>(standard.num_joints()), Mat3::Identity()),
         angles_(kNumStandardAngles, 0.0) {
-    R_world_.fill(Mat3::Identity());
     for (const auto& [upper, lower] : kHingedLimbs)
       limbs_.emplace_back(standard.joint(upper), standard.joint(lower));
   }
@@ -98,12 +99,28 @@ class ToStandard {
       R_world_[at(j)] = R_world_parent * R_joint;
       out.rotations.emplace_back(R_joint);
     }
+    if (has_extremities(standard_)) add_extremities(source, out);
     // The hips are what stands on the legs: they are laid where the source has them.
     out.root_positions.push_back(roots_.standard_per_rig * source.pivot[at(pelvis_)] +
                                  R_world_[root] * roots_.root_from_pelvis);
   }
 
  private:
+  // Those that the source lacks do nothing.
+  void add_extremities(const JointTransforms& source, Motion& out) {
+    for (int e = 0; e < kNumExtremities; ++e) {
+      const auto index = static_cast<extremity::Index>(e);
+      const MappedJoint& mapped = extremities_[at(e)];
+      const Mat3& R_world_parent = R_world_[at(extremity_parent(index))];
+      const Mat3 R_joint =
+          mapped.joint < 0 ? relaxed(standard_, index)
+                           : Mat3(R_world_parent.transpose() *
+                                  source.R_world_joint[at(mapped.joint)] * mapped.R_joint_standard);
+      R_world_[at(extremity_joint(e))] = R_world_parent * R_joint;
+      out.rotations.push_back(Quat(R_joint).normalized());
+    }
+  }
+
   // The source's world rotation on the standard joint's axes; nothing where the joint follows its
   // parent.
   std::optional<Mat3> wanted_rotation(const JointTransforms& source, int j,
@@ -131,7 +148,8 @@ class ToStandard {
   JointMapping joint_mapping_;
   RootAlignment roots_;
   std::vector<Limb> limbs_;
-  std::array<Mat3, kNumStandardJoints> R_world_;
+  const ExtremityMapping& extremities_;
+  std::vector<Mat3> R_world_;
   std::vector<double> angles_;
 };
 

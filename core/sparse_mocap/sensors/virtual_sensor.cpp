@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "sparse_mocap/motion/extremities.hpp"
 #include "sparse_mocap/sensors/filter.hpp"
 
 namespace sparse_mocap {
@@ -93,7 +94,7 @@ Eigen::Matrix3Xd angular_velocity_along(const std::vector<Mat3>& R_world_sensor,
 
 std::vector<VirtualReadings> virtual_readings(const Motion& standard_motion,
                                               std::span<const Site> sites) {
-  if (standard_motion.skeleton.num_joints() != kNumStandardJoints)
+  if (!is_standard(without_extremities(standard_motion.skeleton)))
     throw std::invalid_argument("virtual_readings: the motion is not on a standard skeleton");
   const double dt = standard_motion.frame_time_s;
   std::vector<double> times_s;

@@ -7,6 +7,7 @@
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 #include "sparse_mocap/retrieval/diagnostics.hpp"
+#include "sparse_mocap/retrieval/extremity_vote.hpp"
 #include "sparse_mocap/retrieval/pose_minimizer.hpp"
 #include "sparse_mocap/tautges2011/control.hpp"
 
@@ -53,6 +54,7 @@ std::optional<PoseEstimate> Reconstructor::step(const Reading& reading) {
   // Section 6.4: the root moves as the retrieved motions do in the mean.
   PoseEstimate estimate = remember(reading, q_best, root_rates(*database_, neighbours));
   follower_.apply(estimate);
+  estimate.extremities = extremity_vote(*database_, neighbours);
   estimate.diagnostics =
       retrieval_diagnostics(*database_, neighbours, signals_, signal_rows_, alpha);
   return estimate;
@@ -89,6 +91,7 @@ PoseEstimate Reconstructor::remember(const Reading& reading, const Eigen::Vector
           pose_rotations(skeleton(), angles, root_.yaw_rad()),
           root_.position(),
           rates.contacts,
+          {},
           {}};
 }
 

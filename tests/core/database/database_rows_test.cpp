@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "sparse_mocap/motion/extremities.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 #include "support/synthetic.hpp"
 
@@ -99,6 +100,23 @@ TEST(DatabaseRows, ReadingsAtRestAreGravityForEverySite) {
     }
   }
   EXPECT_EQ(rows.angular_velocity.cwiseAbs().maxCoeff(), 0.0F);
+}
+
+TEST(DatabaseRows, HoldFeetToesAndHandsWhereTheMotionHasThem) {
+  const Skeleton full = with_extremities(template_skeleton());
+  const Motion motion = swaying_motion(full, 6, 100, 25.0);
+  const DatabaseRows rows = database_rows(motion, 25.0);
+  ASSERT_EQ(rows.extremities.cols(), 18);
+  EXPECT_EQ(rows.positions.cols(), 63);
+  for (int t = 0; t < rows.num_frames(); ++t)
+    for (int e = 0; e < kNumExtremities; ++e) {
+      const Vec3 v = rows.extremities.row(t).segment<3>(3 * e).transpose().cast<double>();
+      const Eigen::AngleAxisd turn(v.norm(), v.normalized());
+      EXPECT_LT(Quat(turn).angularDistance(motion.rotation(t, 21 + e)), 1e-5);
+    }
+  const DatabaseRows without =
+      database_rows(swaying_motion(template_skeleton(), 6, 100, 25.0), 25.0);
+  EXPECT_EQ(without.extremities, DatabaseRows::Rows::Zero(without.num_frames(), 18));
 }
 
 TEST(DatabaseRows, KeepTheDirectionUpOfUnitLength) {
