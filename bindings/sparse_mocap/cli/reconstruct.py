@@ -20,9 +20,9 @@ from .. import (
 )
 from ..alignment import aligned
 from ..body_file import read_body
-from ..positions import num_written
 from ..calibration import Calibration
 from ..calibration_file import read_calibration
+from ..positions import num_written
 from ..quality import quality_of
 from ..reconstruction import reconstruct as reconstruct_take
 from ..reconstruction import with_locations
