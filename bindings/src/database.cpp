@@ -28,6 +28,7 @@ Rows of_all_sites(const MotionDatabase& database, ScaledRows SiteRows::*member) 
 Rows rows_named(const MotionDatabase& database, const std::string& name) {
   if (name == "angles") return database.angles().all();
   if (name == "positions") return database.positions().all();
+  if (name == "extremities") return database.extremities().all();
   if (name == "root_motion") return database.root_motion();
   if (name == "contacts") return database.contacts().cast<float>();
   if (name == "specific_force_pivot")
@@ -149,7 +150,7 @@ void bind_content(DatabaseClass& database) {
   database
       .def("array", &array_of, py::arg("name"), R"doc(A read-only copy of the rows as float32.
 
-Names: angles, positions, root_motion, contacts, specific_force_pivot, specific_force_end,
+Names: angles, positions, extremities, root_motion, contacts, specific_force_pivot, specific_force_end,
 angular_velocity, up.)doc")
       .def("clip_motion", &clip_motion, py::arg("index"),
            "The clip as a motion on the standard skeleton, starting at the origin.")

@@ -12,15 +12,23 @@ constexpr double kLiveLag_s = 0.06, kTakeLag_s = 0.04;
 constexpr double kFewKnow = 0.1;
 // A foot is level when it is as certain as the latter that it stands, and free below the former.
 constexpr double kFree = 0.4, kLevel = 0.8;
+constexpr double kFlat_rad = 15.0 * kRadiansPerDegree, kRaised_rad = 30.0 * kRadiansPerDegree;
 constexpr double kMostLift_rad = 90.0 * kRadiansPerDegree;
 
 std::size_t at(int j) { return static_cast<std::size_t>(j); }
 
 double share_of(double lag_s, double frame_time_s) { return 1.0 - std::exp(-frame_time_s / lag_s); }
 
-double levelled(double stands) {
-  const double x = std::clamp((stands - kFree) / (kLevel - kFree), 0.0, 1.0);
+// Rises smoothly from 0 at `from` to 1 at `to`.
+double step_between(double from, double to, double value) {
+  const double x = std::clamp((value - from) / (to - from), 0.0, 1.0);
   return x * x * (3.0 - 2.0 * x);
+}
+
+// How much a foot is laid flat: one that is tilted further stands on its toes or its heel.
+double levelled(double stands, double tilt_rad) {
+  return step_between(kFree, kLevel, stands) *
+         (1.0 - step_between(kFlat_rad, kRaised_rad, tilt_rad));
 }
 
 // The level foot that points where a foot does.
@@ -80,10 +88,12 @@ void ExtremityTrack::append(const State& state, PoseEstimate& estimate) const {
   forward_kinematics(skeleton_, estimate.root_position, R_joint, pose);
   for (const auto foot : {extremity::lfoot, extremity::rfoot}) {
     const int joint = extremity_joint(foot), toes = joint + 1;
-    const double level = levelled(state.stands[foot == extremity::lfoot ? 0 : 1]);
     const double ankle_m = pose.pivot[at(joint)].y();
     Quat R_world_foot(pose.R_world_joint[at(joint)]);
-    R_world_foot = R_world_foot.slerp(level, level_like(R_world_foot));
+    const Quat flat = level_like(R_world_foot);
+    const double level = levelled(state.stands[foot == extremity::lfoot ? 0 : 1],
+                                  R_world_foot.angularDistance(flat));
+    R_world_foot = R_world_foot.slerp(level, flat);
     R_world_foot = lifted(R_world_foot, skeleton_.joint(joint).bone, ankle_m);
     const double ball_m = ankle_m + (R_world_foot * skeleton_.joint(joint).bone).y();
     const Quat R_foot_toes = rotations[at(toes)].slerp(level, Quat::Identity());

@@ -11,7 +11,7 @@ namespace sparse_mocap {
 
 // Gives the poses of one performance feet, toes and hands: what the retrieved frames say of them,
 // relaxed where these know nothing, smooth in time. A foot lies level on the floor (y = 0) while it
-// stands, and toes stay above it.
+// stands, unless its heel or its toes are raised, and toes stay above the floor.
 class ExtremityTrack {
  public:
   // Poses of a skeleton other than the standard one stay as they are.

@@ -28,13 +28,11 @@ PoseEstimate pose_at(double ankle_m, double lean_rad, double stands) {
   return estimate;
 }
 
-// Feet that point down by so much from where a relaxed one would.
+// Feet that are tilted down from their shanks, which are upright but for their lean.
 void point_feet(PoseEstimate& estimate, double down_rad) {
-  const Skeleton full = with_extremities(template_skeleton());
   for (const auto foot : {extremity::lfoot, extremity::rfoot}) {
     const auto e = static_cast<std::size_t>(foot);
-    estimate.extremities.R_parent_joint[e] =
-        Quat(Mat3(relaxed(full, foot) * Eigen::AngleAxisd(down_rad, Vec3::UnitX())));
+    estimate.extremities.R_parent_joint[e] = Quat(Eigen::AngleAxisd(down_rad, Vec3::UnitX()));
     estimate.extremities.certainty[e] = 1.0;
   }
 }
@@ -58,17 +56,26 @@ TEST(ExtremityTrack, LeavesOtherSkeletonsAlone) {
   EXPECT_EQ(track.skeleton().num_joints(), 2);
 }
 
-// Whatever the shanks' lean and what was retrieved, a standing foot lies flat.
+// Whatever the shanks' lean, a standing foot that is nearly flat lies flat.
 TEST(ExtremityTrack, AStandingFootIsLevel) {
   for (const double lean : {-0.6, 0.0, 0.5}) {
     PoseEstimate estimate = pose_at(0.09, lean, 1.0);
-    point_feet(estimate, 0.3);
+    point_feet(estimate, 0.2 - lean);
     const JointTransforms pose = completed(estimate);
     for (const auto e : {extremity::lfoot, extremity::rfoot}) {
       EXPECT_LT((pose.R_world_joint[joint(e)] * kUp - kUp).norm(), 1e-6) << lean;
       EXPECT_LT((pose.R_world_joint[joint(e + 1)] * kUp - kUp).norm(), 1e-6) << lean;
     }
   }
+}
+
+TEST(ExtremityTrack, ARaisedHeelStaysRaised) {
+  PoseEstimate estimate = pose_at(0.16, 0.0, 1.0);
+  point_feet(estimate, 0.7);
+  const JointTransforms pose = completed(estimate);
+  const double tilt = std::acos((pose.R_world_joint[joint(extremity::lfoot)] * kUp).y());
+  EXPECT_GT(tilt, 0.6);
+  EXPECT_GT(pose.end[joint(extremity::ltoes)].y(), -1e-6);
 }
 
 TEST(ExtremityTrack, AFreeFootIsAsRetrieved) {
