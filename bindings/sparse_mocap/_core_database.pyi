@@ -69,8 +69,8 @@ class MotionDatabase:
     def array(self, name: str) -> NDArray[np.float32]:
         """A read-only copy of the rows as float32.
 
-        Names: angles, positions, extremities, root_motion, contacts, specific_force_pivot, specific_force_end,
-        angular_velocity, up.
+        Names: angles, positions, extremities, root_motion, contacts, specific_force_pivot,
+        specific_force_end, angular_velocity, up.
         """
     def clip_motion(self, index: int) -> Motion:
         """The clip as a motion on the standard skeleton, starting at the origin."""

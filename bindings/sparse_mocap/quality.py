@@ -176,7 +176,7 @@ def _calibration_of(database: MotionDatabase | None) -> _Calibration:
 def _evidence(solved: Reconstruction, rows: slice) -> _Evidence:
     told = solved.diagnostics
     force = np.asarray(solved.readings.specific_force)[rows]
-    poses = np.asarray(solved.motion.joint_positions("heading"))[rows]
+    poses = np.asarray(solved.motion.without_extremities().joint_positions("heading"))[rows]
     misfit = np.asarray(told["sensor_misfit_mps2"])[rows]
     return _Evidence(
         np.sqrt((np.asarray(told["spread_m"])[rows] ** 2).mean(axis=1)),
@@ -281,7 +281,7 @@ def _reconstructed(
     )
     solved = reconstruct(take, database, excluded_clips=excluded, use_gyroscopes=False)
     numbers = np.round(np.asarray(solved.readings.times_s) * database.rate_hz).astype(int)
-    poses = np.asarray(solved.motion.joint_positions("heading"))
+    poses = np.asarray(solved.motion.without_extremities().joint_positions("heading"))
     truth = database.array("positions")[rows].reshape(len(rows), -1, 3).astype(float)
     found, begin = [], 0
     for length in lengths:
