@@ -97,7 +97,8 @@ def test_the_shown_pose_is_the_cores(tmp_path):
     with connected(tmp_path):
         armature = _go_live()
         pose = _ticked(25)[-1][0]
-        skeleton = sparse_mocap.MotionDatabase(library().database).skeleton
+        standard = sparse_mocap.MotionDatabase(library().database).skeleton
+        skeleton = sparse_mocap.with_extremities(standard)
         motion = sparse_mocap.Motion(skeleton, 0.04, pose.root_position[None], pose.rotations[None])
         wanted = in_blenders_axes(motion.joint_positions("world"))[0]
         bpy.context.view_layer.update()

@@ -89,7 +89,7 @@ def test_keys_are_grouped_continuous_quaternions():
         assert {key.interpolation for key in curve.keyframe_points} == {"LINEAR"}
         by_path.setdefault(curve.data_path, {})[curve.array_index] = keys[:, 1]
     rotations = [path for path in by_path if path.endswith("rotation_quaternion")]
-    assert len(rotations) == 21
+    assert len(rotations) == 27  # with feet, toes and hands
     assert set(by_path) - set(rotations) == {'pose.bones["pelvis"].location'}
     for path in rotations:
         quaternions = np.column_stack([by_path[path][index] for index in range(4)])
