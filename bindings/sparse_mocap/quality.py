@@ -18,7 +18,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import Clip, MotionDatabase, Reconstruction, store_section
+from ._core import (
+    Clip,
+    MotionDatabase,
+    Reconstruction,
+    standard_joint_names,
+    store_section,
+)
 from .reconstruction import reconstruct
 from .take import SensorRecord, Take
 
@@ -44,6 +50,7 @@ _ALIKE_ADVICE = (
     "gyroscopes, or clips of this performer help"
 )
 
+_NUM_JOINTS = len(standard_joint_names())  # those that are judged: no feet, toes and hands
 _FAIR_FROM, _POOR_FROM = 0.65, 0.95  # of the mean pose's error: as many warnings as are due
 _SECONDS_AROUND_S = 1.0  # a second is judged with what is so near to its middle
 _HOP_FRAMES = 3  # a retrieved movement that goes on moves less in the database from frame to frame
@@ -176,7 +183,7 @@ def _calibration_of(database: MotionDatabase | None) -> _Calibration:
 def _evidence(solved: Reconstruction, rows: slice) -> _Evidence:
     told = solved.diagnostics
     force = np.asarray(solved.readings.specific_force)[rows]
-    poses = np.asarray(solved.motion.without_extremities().joint_positions("heading"))[rows]
+    poses = np.asarray(solved.motion.joint_positions("heading"))[:, :_NUM_JOINTS][rows]
     misfit = np.asarray(told["sensor_misfit_mps2"])[rows]
     return _Evidence(
         np.sqrt((np.asarray(told["spread_m"])[rows] ** 2).mean(axis=1)),
@@ -281,7 +288,7 @@ def _reconstructed(
     )
     solved = reconstruct(take, database, excluded_clips=excluded, use_gyroscopes=False)
     numbers = np.round(np.asarray(solved.readings.times_s) * database.rate_hz).astype(int)
-    poses = np.asarray(solved.motion.without_extremities().joint_positions("heading"))
+    poses = np.asarray(solved.motion.joint_positions("heading"))[:, :_NUM_JOINTS]
     truth = database.array("positions")[rows].reshape(len(rows), -1, 3).astype(float)
     found, begin = [], 0
     for length in lengths:

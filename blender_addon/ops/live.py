@@ -20,6 +20,7 @@ from ..scene.settings import scene_choice, settings_of
 from ..scene.takes import add_take
 from ..scene.targets import chosen_armatures, own_figure, placement_of
 from ..session import live, sensors
+from ..session.core import core
 from ..session.database import Database
 from ..session.errors import InputError
 from ..session.job import Job
@@ -159,7 +160,7 @@ class SPARSEMOCAP_OT_go_live(JobOperator, Operator):
         yield 0.0
         session = connected()
         database, calibration = result
-        armature = live_scene.follow(context, database.motions.skeleton)
+        armature = live_scene.follow(context, core().with_extremities(database.motions.skeleton))
         session.go_live(database, scene_choice(context.scene), calibration)
         return f'Live preview on "{armature.name}"'
 

@@ -75,7 +75,7 @@ def test_feet_pitch_as_the_files_do(real_data: Path) -> None:
             change = np.degrees(elevation(ours) - elevation(theirs))
             # The foot's own slope in rest is not meant as movement; it turns with the foot.
             assert np.ptp(change) < 20.0, (path, name)
-            assert np.std(change) < 3.0, (path, name)
+            assert np.std(change) < 6.0, (path, name)
             if name.endswith("toes"):
                 continue
             across = np.cross(theirs, ours)[:, 1] / (

@@ -26,6 +26,7 @@ from sparse_mocap import (
     playback_best_path,
     read_take,
     reconstruct,
+    with_extremities,
 )
 from sparse_mocap.capture.sample_log import SAMPLE
 from sparse_mocap.methods import method_info, methods, option_values, renamed_preset
@@ -104,7 +105,7 @@ def test_a_take_is_solved_frame_by_frame(
     frames = len(readings)
     assert solved.motion.num_frames == frames
     assert solved.motion.frame_time_s == pytest.approx(1 / database.rate_hz)
-    assert solved.motion.skeleton.names == database.skeleton.names
+    assert solved.motion.skeleton.names == with_extremities(database.skeleton).names
     assert (solved.latency_s is None) == best_quality
     shapes = {"spread_m": 21, "sensor_misfit_mps2": 4, "clip": 1, "database_frame": 1}
     for name, width in shapes.items():

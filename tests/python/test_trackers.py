@@ -63,7 +63,7 @@ def heading_errors_cm(found: Reconstruction, performance: Performance) -> Floats
 
 def _errors_cm(found: Reconstruction, performance: Performance, frame: str) -> Floats:
     truth = np.asarray(performance.motion.resampled(found.rate_hz).joint_positions(frame))
-    ours = np.asarray(found.motion.joint_positions(frame))
+    ours = np.asarray(found.motion.without_extremities().joint_positions(frame))
     count = min(len(truth), len(ours))
     return 100 * np.linalg.norm(ours[:count] - truth[:count], axis=-1).mean(axis=1)
 
