@@ -63,7 +63,7 @@ def test_a_rigify_character_follows_and_is_as_before_afterwards(tmp_path):
         shown = _ticked(40)
         print(f"tick: median {1e3 * np.median([s for _, s in shown]):.2f} ms")
         pose = shown[-1][0]
-        skeleton = rigs.standard_skeleton()
+        skeleton = sparse_mocap.with_extremities(rigs.standard_skeleton())
         motion = sparse_mocap.Motion(skeleton, 0.04, pose.root_position[None], pose.rotations[None])
         limbs = {
             "lfemur": ("DEF-thigh.L", "DEF-shin.L"),
