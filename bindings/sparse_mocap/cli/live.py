@@ -99,15 +99,8 @@ def live(
         client.set_sites(site_of)
         status = _status(client)
         remember(client, site_of)
-        session = LiveSession(
-            client,
-            status,
-            database,
-            choice,
-            calibration,
-            model_of(choice, model_path, database),
-            body_of(body_path),
-        )
+        model, body = model_of(choice, model_path, database), body_of(body_path)
+        session = LiveSession(client, status, database, choice, calibration, model, body)
         if positions is not None:
             file = stack.enter_context(positions.open("w", encoding="utf-8"))
             session.stream_to(file, extremities)
