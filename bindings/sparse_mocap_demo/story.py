@@ -115,7 +115,8 @@ def _compare(
     estimate_times = np.asarray(solved.readings.times_s)
     times = times[times <= estimate_times[-1]]
     truth = truth[: len(times)]
-    positions = np.asarray(solved.motion.joint_positions("heading"))
+    motion = solved.motion.without_extremities()
+    positions = np.asarray(motion.joint_positions("heading"))
     estimate = interpolated(estimate_times, positions, times)
     poses = database.array("positions").reshape(database.num_frames, -1, 3)
     oracle = np.asarray(poses[nearest_poses(database, truth)], float)
