@@ -97,7 +97,8 @@ def test_a_take_is_reconstructed_as_the_calibration_says(tmp_path):
     database = sparse_mocap.MotionDatabase(library().database)
     positions = dict.fromkeys(ideal.sites, 0.7)
     solved = sparse_mocap.reconstruct(ideal, database, positions_along_bone=positions)
-    wanted = in_blenders_axes(solved.motion.joint_positions("world"))
+    motion = solved.motion.without_extremities()
+    wanted = in_blenders_axes(motion.joint_positions("world"))
     for index in (10, 200, 400):
         shown = evaluated_points(armature, index + 1, database.skeleton.names)
         assert np.abs(shown - wanted[index]).max() < 1e-3
