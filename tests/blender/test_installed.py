@@ -22,7 +22,7 @@ def _files() -> list[str]:
 
 
 def _released(files: list[str]) -> list[str]:
-    """Those that come with a release: no compiled modules, and no log, which people may still send."""
+    """Those of a release: no compiled modules, and no log, which people may still want to send."""
     return [name for name in files if not name.endswith((".pyc", ".log"))]
 
 
