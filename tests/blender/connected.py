@@ -15,15 +15,21 @@ from support import SITES, Skipped, addon, library, settings
 
 @contextmanager
 def connected(tmp_path: Path, take_path: Path | None = None) -> Iterator[object]:
-    """A session with an emulator that plays a take (the library's) again and again, beside a saved
-    file: a busy machine may show the first pose only after the take's length."""
+    """A session with an emulator that plays a take, beside a saved file.
+
+    Without a take the library's, again and again: a busy machine may show the first pose only after
+    its length.
+    """
     if os.name == "nt":
         raise Skipped("there are no pseudo-terminals")
     serial_folder()
     import sparse_mocap
 
     (tmp_path / "runtime").mkdir(mode=0o700)
-    take = repeated(sparse_mocap.read_take(take_path or library().take), 10)
+    if take_path is None:
+        take = repeated(sparse_mocap.read_take(library().take), 10)
+    else:
+        take = sparse_mocap.read_take(take_path)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
     with own_runtime(tmp_path / "runtime"), emulated(take) as port:
         chosen = settings()
