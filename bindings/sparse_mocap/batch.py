@@ -82,7 +82,7 @@ def outputs(takes: Sequence[Path], folder: Path) -> dict[Path, Path]:
             raise ConfigError(f"{given}: no such file or folder")
         inside = sorted(path for path in given.rglob("*.csv") if path.is_file())
         if given.is_dir() and not inside:
-            raise ConfigError(f"{given}: holds no takes (.csv)")
+            raise ConfigError(f"{given}: there are no takes (.csv) in this folder")
         for take in inside if given.is_dir() else [given]:
             relative = take.relative_to(given) if given.is_dir() else Path(take.name)
             found[take.absolute()] = (folder / relative).absolute().with_suffix(".bvh")

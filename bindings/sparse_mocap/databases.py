@@ -136,5 +136,5 @@ _opening = threading.Lock()
 @functools.lru_cache(maxsize=1)
 def _opened(path: str, expected_hash: str | None) -> _core.MotionDatabase:
     if expected_hash is not None and content_hash(path) != expected_hash:
-        raise _core.ConfigError(f"{path}: is another database than the one the work began with")
+        raise _core.ConfigError(f"{path}: has changed since the work began; start the work again")
     return _core.MotionDatabase(path)

@@ -47,7 +47,9 @@ def cluster(address: str, timeout_s: float = 10.0) -> Iterator[Executor]:
     try:
         client = Client(address, timeout=timeout_s)
     except (OSError, ValueError) as error:
-        raise ConfigError(f"no Dask scheduler answers at {address}: {error}") from error
+        raise ConfigError(
+            f"no Dask scheduler answers at {address}; is it started? ({error})"
+        ) from error
     with client:
         _require_same_version(address, client.run(_version_there))
         executor = client.get_executor(pure=False, retries=_RETRIES)
@@ -75,7 +77,9 @@ def _version_there() -> str:
 
 def _require_same_version(address: str, found: dict[str, str]) -> None:
     if not found:
-        raise ConfigError(f"the Dask scheduler at {address} has no workers")
+        raise ConfigError(
+            f"the Dask scheduler at {address} has no workers; start one: dask worker {address}"
+        )
     for worker, version in found.items():
         if version != version_here():
             raise ConfigError(

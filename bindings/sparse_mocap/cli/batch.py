@@ -15,9 +15,12 @@ from .faults import Fault
 from .options import (
     FilePath,
     body_option,
+    calibration_option,
+    gyroscopes_option,
     method_choice,
     method_option,
     model_option,
+    offline_option,
     preset_option,
     scheduler_option,
     set_option,
@@ -39,20 +42,12 @@ __all__ = ["batch"]
 @set_option
 @model_option
 @body_option
-@click.option(
-    "--offline", is_flag=True,
-    help="Best quality: use the whole take for every frame. Without it, live quality.",
-)  # fmt: skip
-@click.option(
-    "--gyroscopes/--no-gyroscopes", default=True, show_default=True,
-    help="Also use the gravity direction, for sensors with gyroscopes (gx,gy,gz).",
-)  # fmt: skip
-@click.option(
-    "--calibration", "calibration_path", type=FilePath, help="The sensors' calibration (.json)."
-)
+@offline_option
+@gyroscopes_option
+@calibration_option
 @click.option(
     "--threads", "num_threads", type=click.IntRange(0, 1024), default=0,
-    help="Takes solved at once; 0, the default, is one for each processor.",
+    help="How many takes to solve at once; by default one on each processor.",
 )  # fmt: skip
 @scheduler_option
 def batch(

@@ -93,7 +93,7 @@ def _simulation_options(command: Callable[..., Any]) -> Callable[..., Any]:
 )
 @click.option(
     "--train", "training", metavar="GLOB",
-    help="Files that the database and models have, in place of the scenario's; with --tests.",
+    help="Files for the database and the models, instead of the scenario's. Needs --tests.",
 )  # fmt: skip
 @click.option("--json", "json_path", type=OutputPath(), help="Write all results as JSON.")
 @click.option("--plots", type=FilePath, help="Write plots of the errors to this folder.")
@@ -149,7 +149,9 @@ def evaluate(
     are poor matches, precision and recall, where the clip's mean pose is nearer.
     """
     if scheduler is not None and cache is None:
-        raise click.UsageError("Missing option '--cache': workers find the database there.")
+        raise click.UsageError(
+            "--scheduler needs --cache: a folder for the database that all workers can read."
+        )
     names, presets = _renamed(names, presets)
     common = Settings(scenario, tests=tests, pairs=chosen_pairs(training, tests), **simulation)
     if paper or experiments:

@@ -19,7 +19,7 @@ def chosen_pairs(training: str | None, tests: str | None) -> tuple[tuple[str, st
     if training is None:
         return ()
     if tests is None:
-        raise click.UsageError("--train goes with --tests: the files to test.")
+        raise click.UsageError("--train needs --tests: say which files to test.")
     return ((training, tests),)
 
 

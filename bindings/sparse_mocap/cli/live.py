@@ -27,6 +27,7 @@ from .options import (
     FilePath,
     OutputPath,
     body_option,
+    calibration_option,
     extremities_option,
     method_choice,
     method_option,
@@ -52,9 +53,7 @@ _MORE_SENSORS_S = 1.0  # how long to wait for further sensors after the first sa
 @set_option
 @model_option
 @body_option
-@click.option(
-    "--calibration", "calibration_path", type=FilePath, help="The sensors' calibration (.json)."
-)
+@calibration_option
 @click.option("--positions", type=OutputPath(), help="Also write the joint positions (.csv).")
 @extremities_option
 @click.option("--seconds", type=click.FloatRange(0.1), help="Stop after this time.")

@@ -211,6 +211,20 @@ frame_option: Decorator = click.option(
     " orientation removed, or world.",
 )  # fmt: skip
 
+offline_option: Decorator = click.option(
+    "--offline", is_flag=True,
+    help="Best quality: use the whole take for every frame. Without it, live quality.",
+)  # fmt: skip
+
+gyroscopes_option: Decorator = click.option(
+    "--gyroscopes/--no-gyroscopes", default=True, show_default=True,
+    help="Also use the gravity direction, for sensors with gyroscopes (gx,gy,gz).",
+)  # fmt: skip
+
+calibration_option: Decorator = click.option(
+    "--calibration", "calibration_path", type=FilePath, help="The sensors' calibration (.json)."
+)
+
 extremities_option: Decorator = click.option(
     "--extremities", is_flag=True, help="Write the positions of feet, toes and hands as well."
 )

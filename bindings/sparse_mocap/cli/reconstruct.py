@@ -34,12 +34,15 @@ from .options import (
     OutputPath,
     Span,
     body_option,
+    calibration_option,
     check_ending,
     extremities_option,
     frame_option,
+    gyroscopes_option,
     method_choice,
     method_option,
     model_option,
+    offline_option,
     position_along_bone_option,
     positions_along_bone_of,
     preset_option,
@@ -60,14 +63,8 @@ __all__ = ["body_of", "model_of", "reconstruct", "require_given"]
 @set_option
 @model_option
 @body_option
-@click.option(
-    "--offline", is_flag=True,
-    help="Best quality: use the whole take for every frame. Without it, live quality.",
-)  # fmt: skip
-@click.option(
-    "--gyroscopes/--no-gyroscopes", default=True, show_default=True,
-    help="Also use the gravity direction, for sensors with gyroscopes (gx,gy,gz).",
-)  # fmt: skip
+@offline_option
+@gyroscopes_option
 @click.option("--positions", type=OutputPath(), help="Also write the joint positions (.csv).")
 @frame_option
 @extremities_option
@@ -75,9 +72,7 @@ __all__ = ["body_of", "model_of", "reconstruct", "require_given"]
     "--json", "json_path", type=OutputPath(), help="Also write a report on every frame as JSON."
 )
 @position_along_bone_option
-@click.option(
-    "--calibration", "calibration_path", type=FilePath, help="The sensors' calibration (.json)."
-)
+@calibration_option
 @click.option(
     "--clap", type=Span(),
     help="When all sensors measured the same clap or jump, to synchronize their clocks.",
