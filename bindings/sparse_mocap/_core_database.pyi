@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The compiled core: motion databases."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path as _Path
 from typing import TypedDict, Unpack
 
@@ -166,6 +166,8 @@ class _ImportOptions(TypedDict, total=False):
     progress: ProgressCallback | None
     details: Callable[[ProgressReport], object] | None
 
+_RemoteWork = Callable[[list[bytes]], Iterable[bytes | None]]
+
 def build_database(
     sources: Sequence[Path],
     output: Path,
@@ -177,6 +179,7 @@ def build_database(
     exclude: Sequence[str] = (),
     labels: Mapping[str, tuple[str, str, str, str, float]] = ...,
     label_warnings: Sequence[str] = (),
+    remote: _RemoteWork | None = None,
     **options: Unpack[_ImportOptions],
 ) -> BuildReport:
     """Builds a database from motion files, or folders of them, and writes it to output.
@@ -187,8 +190,16 @@ def build_database(
     used or is doubtful ends it, otherwise it is skipped or taken with a warning; keep_duplicates:
     files with the same motion are all taken; num_threads 0: one for each processor; by_hand: the
     source's joint by standard joint; mappings: the file of remembered mappings; read: what the
-    files do not say. Raises FormatError, and Cancelled if progress returns False; the output is
-    then left as it was.
+    files do not say; remote(requests): does the work on files in place of this process, and gives
+    an iterator over what answer_request says of each request, None while the next is not there yet.
+    Raises FormatError, and Cancelled if progress returns False; the output is then left as it was.
+    """
+
+def answer_request(request: bytes, read: ReadOptions) -> bytes:
+    """Does the work on a motion file that an import asks for, as bytes.
+
+    read: readers of further formats; all else is in the request. Raises ValueError for what is no
+    request of this version.
     """
 
 def add_to_database(
@@ -200,6 +211,7 @@ def add_to_database(
     labels: Mapping[str, tuple[str, str, str, str, float]] = ...,
     label_warnings: Sequence[str] = (),
     rebuild: bool = False,
+    remote: _RemoteWork | None = None,
     **options: Unpack[_ImportOptions],
 ) -> BuildReport:
     """Adds motion files to a database, with the copies that it was built with.

@@ -11,13 +11,15 @@ import functools
 import hashlib
 import os
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
 from typing import TYPE_CHECKING
 
 from . import _core
 from .labels import find_labels
 from .motion_files import read_options
 from .quality import calibrate_quality
+from .workers import in_order
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -39,6 +41,7 @@ def build_database(
     tempo_copies: Sequence[float] = (0.8, 1.25),
     exclude: Sequence[str] = (),
     metadata: Path | None = None,
+    workers: Executor | None = None,
     **options: Unpack[_ImportOptions],
 ) -> _core.BuildReport:
     """Builds a database from motion files and folders of them, and tells what came of it.
@@ -46,7 +49,9 @@ def build_database(
     rate_hz: frames a second of the database; mirror, reverse: whether each clip is added mirrored
     and played backwards too; tempo_copies: tempos at which a small database holds each clip once
     more; exclude: glob patterns of file names to leave out; metadata: a table of labels
-    file,actor,class,source,license (None: metadata.csv of the source folders).
+    file,actor,class,source,license (None: metadata.csv of the source folders); workers: who reads
+    the files in place of this process (see workers.cluster), who must find them at the same paths;
+    the database is the same.
 
     Further options: strict stops at the first file that cannot be used or whose motion is doubtful
     (check_clip in the core has the limits); read: what the files do not say (see read_options);
@@ -58,6 +63,7 @@ def build_database(
     Raises FormatError (nothing usable, or strict), ConfigError, Cancelled and OSError; output is
     untouched then.
     """
+    sources = _found_by(workers, sources)
     labels, warnings = find_labels(sources, exclude, metadata)
     options.setdefault("read", read_options())
     report = _core.build_database(
@@ -70,6 +76,7 @@ def build_database(
         exclude=exclude,
         labels=labels,
         label_warnings=warnings,
+        remote=None if workers is None else _remote_work(workers),
         **options,
     )
     calibrate_quality(output)
@@ -84,6 +91,7 @@ def add_to_database(
     exclude: Sequence[str] = (),
     metadata: Path | None = None,
     rebuild: bool = False,
+    workers: Executor | None = None,
     **options: Unpack[_ImportOptions],
 ) -> _core.BuildReport:
     """Adds motion files on the database's skeleton, at its rate, with its kinds of copies.
@@ -93,6 +101,7 @@ def add_to_database(
     actors would change the averaged skeleton; rebuild averages it anew and needs the database's
     own files among the sources too. Options and errors as for build_database.
     """
+    sources = _found_by(workers, sources)
     labels, warnings = find_labels(sources, exclude, metadata)
     options.setdefault("read", read_options())
     report = _core.add_to_database(
@@ -103,10 +112,33 @@ def add_to_database(
         labels=labels,
         label_warnings=warnings,
         rebuild=rebuild,
+        remote=None if workers is None else _remote_work(workers),
         **options,
     )
     calibrate_quality(database if output is None else output)
     return report
+
+
+def _found_by(workers: Executor | None, sources: Sequence[Path]) -> Sequence[Path]:
+    """Returns the sources as other processes find them, too."""
+    return sources if workers is None else [os.path.abspath(source) for source in sources]
+
+
+def _remote_work(workers: Executor) -> Callable[[list[bytes]], Iterator[bytes | None]]:
+    def answers(requests: list[bytes]) -> Iterator[bytes | None]:
+        pieces = [requests[i : i + _FILES_AT_ONCE] for i in range(0, len(requests), _FILES_AT_ONCE)]
+        for found in in_order(workers, _answers, pieces):
+            if found is None:
+                yield None
+            else:
+                yield from found
+
+    return answers
+
+
+def _answers(requests: list[bytes]) -> list[bytes]:
+    read = read_options()
+    return [_core.answer_request(request, read) for request in requests]
 
 
 def content_hash(database: Path) -> str:
@@ -130,6 +162,7 @@ def shared_database(path: str, expected_hash: str | None = None) -> _core.Motion
 
 
 _MOST_HEADER_BYTES = 1 << 30
+_FILES_AT_ONCE = 8  # that a worker reads for one message
 _opening = threading.Lock()
 
 

@@ -4,16 +4,26 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from concurrent.futures import Executor, ThreadPoolExecutor
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from itertools import islice
+from typing import TypeVar
 
 from ._core import ConfigError
 
-__all__ = ["cluster", "processors", "version_here"]
+__all__ = ["cluster", "in_order", "processors", "version_here"]
+
+Asked = TypeVar("Asked")
+Found = TypeVar("Found")
 
 _RETRIES = 3
 """How often work is given to another worker when the one that had it was lost."""
+
+_MOST_BEGUN = 1000
+"""How many pieces of work are given out before the first of them is fetched."""
+_PATIENCE_S = 0.2
 
 
 @contextmanager
@@ -57,6 +67,30 @@ def cluster(address: str, timeout_s: float = 10.0) -> Iterator[Executor]:
             yield executor
         finally:
             executor.shutdown(wait=False)
+
+
+def in_order(
+    executor: Executor, work: Callable[[Asked], Found], pieces: Sequence[Asked]
+) -> Iterator[Found | None]:
+    """Yields work(piece) for each piece, in their order; None every now and then while waiting.
+
+    What has not begun when the iterator is closed is never begun.
+    """
+    left = iter(pieces)
+    begun: deque[Future[Found]] = deque()
+    begun.extend(executor.submit(work, piece) for piece in islice(left, _MOST_BEGUN))
+    try:
+        while begun:
+            wait([begun[0]], timeout=_PATIENCE_S)
+            if not begun[0].done():
+                yield None
+                continue
+            found = begun.popleft().result()
+            begun.extend(executor.submit(work, piece) for piece in islice(left, 1))
+            yield found
+    finally:
+        for future in begun:
+            future.cancel()
 
 
 def version_here() -> str:

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <map>
+#include <memory>
+#include <stdexcept>
 #include <tuple>
 
 #include "common.hpp"
@@ -16,11 +18,39 @@ using Callback = std::optional<py::function>;
 using Labels =
     std::map<fs::path, std::tuple<std::string, std::string, std::string, std::string, double>>;
 
+// What a Python function gives for requests: an iterator over the answers, None while the next is
+// not there yet.
+NextAnswer answers_of(const py::function& function, const std::vector<std::string>& requests) {
+  const py::gil_scoped_acquire gil;
+  py::list asked;
+  for (const auto& request : requests) asked.append(py::bytes(request));
+  const std::shared_ptr<py::iterator> answers(new py::iterator(py::iter(function(asked))),
+                                              [](py::iterator* iterator) {
+                                                const py::gil_scoped_acquire held;
+                                                delete iterator;
+                                              });
+  return [answers]() -> std::optional<std::string> {
+    const py::gil_scoped_acquire held;
+    const auto answer = py::reinterpret_steal<py::object>(PyIter_Next(answers->ptr()));
+    if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+    if (!answer) throw std::runtime_error("a motion file was asked about and got no answer");
+    if (answer.is_none()) return std::nullopt;
+    return answer.cast<std::string>();
+  };
+}
+
+RemoteWork remote_from(const Callback& function) {
+  if (!function) return {};
+  return [function](const std::vector<std::string>& requests) {
+    return answers_of(*function, requests);
+  };
+}
+
 ImportOptions import_options(const std::vector<std::string>& exclude, bool strict,
                              bool keep_duplicates, int num_threads, const Labels& labels,
                              const std::vector<std::string>& label_warnings,
                              const JointNames& by_hand, const std::optional<fs::path>& mappings,
-                             const ReadOptions& read) {
+                             const ReadOptions& read, const Callback& remote) {
   ImportOptions options;
   options.exclude = exclude;
   options.is_strict = strict;
@@ -33,7 +63,17 @@ ImportOptions import_options(const std::vector<std::string>& exclude, bool stric
   options.label_warnings = label_warnings;
   options.mapping = {by_hand, mappings.value_or(fs::path())};
   options.read = read;
+  options.remote = remote_from(remote);
   return options;
+}
+
+py::bytes answer(const std::string& request, const ReadOptions& read) {
+  std::string bytes;
+  {
+    const py::gil_scoped_release release;
+    bytes = answer_to(request, read);
+  }
+  return bytes;
 }
 
 // Each with its name in a database.
@@ -59,9 +99,9 @@ BuildReport build(const Paths& sources, const fs::path& output, double rate_hz, 
                   int num_threads, const Labels& labels,
                   const std::vector<std::string>& label_warnings, const JointNames& by_hand,
                   const std::optional<fs::path>& mappings, const ReadOptions& read,
-                  const Callback& callback, const Callback& details) {
+                  const Callback& remote, const Callback& callback, const Callback& details) {
   BuildOptions options{import_options(exclude, strict, keep_duplicates, num_threads, labels,
-                                      label_warnings, by_hand, mappings, read)};
+                                      label_warnings, by_hand, mappings, read, remote)};
   options.rate_hz = rate_hz;
   options.add_mirrored = mirror;
   options.add_reversed = reverse;
@@ -76,9 +116,10 @@ BuildReport add(const fs::path& database, const Paths& sources,
                 bool strict, bool keep_duplicates, int num_threads, const Labels& labels,
                 const std::vector<std::string>& label_warnings, const JointNames& by_hand,
                 const std::optional<fs::path>& mappings, const ReadOptions& read, bool rebuild,
-                const Callback& callback, const Callback& details) {
-  const ImportOptions options = import_options(exclude, strict, keep_duplicates, num_threads,
-                                               labels, label_warnings, by_hand, mappings, read);
+                const Callback& remote, const Callback& callback, const Callback& details) {
+  const ImportOptions options =
+      import_options(exclude, strict, keep_duplicates, num_threads, labels, label_warnings, by_hand,
+                     mappings, read, remote);
   const Progress progress = progress_from(callback, details);
   const py::gil_scoped_release release;
   const auto change = rebuild ? &rebuild_database : &add_to_database;
@@ -166,8 +207,8 @@ Raises FormatError when a source does not exist or nothing is left.)doc");
         py::arg("strict") = false, py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
         py::arg("labels") = Labels(), py::arg("label_warnings") = no_patterns,
         py::arg("by_hand") = JointNames(), py::arg("mappings") = py::none(),
-        py::arg("read") = ReadOptions(), py::arg("progress") = py::none(),
-        py::arg("details") = py::none(),
+        py::arg("read") = ReadOptions(), py::arg("remote") = py::none(),
+        py::arg("progress") = py::none(), py::arg("details") = py::none(),
         R"doc(Builds a database from motion files, or folders of them, and writes it to output.
 
 rate_hz is the database's frame rate; mirror, reverse and tempo_copies (factors) add copies of
@@ -176,14 +217,20 @@ and the rate (Hz, 0: not said) by a motion file's path. strict: the first file t
 used or is doubtful ends it, otherwise it is skipped or taken with a warning; keep_duplicates:
 files with the same motion are all taken; num_threads 0: one for each processor; by_hand: the
 source's joint by standard joint; mappings: the file of remembered mappings; read: what the
-files do not say. Raises FormatError, and Cancelled if progress returns False; the output is
-then left as it was.)doc");
+files do not say; remote(requests): does the work on files in place of this process, and gives an
+iterator over what answer_request says of each request, None while the next is not there yet. Raises
+FormatError, and Cancelled if progress returns False; the output is then left as it was.)doc");
+  m.def("answer_request", &answer, py::arg("request"), py::arg("read"),
+        R"doc(Does the work on a motion file that an import asks for, as bytes.
+
+read: readers of further formats; all else is in the request. Raises ValueError for what is no
+request of this version.)doc");
   m.def("add_to_database", &add, py::arg("database"), py::arg("sources"),
         py::arg("output") = py::none(), py::kw_only(), py::arg("exclude") = no_patterns,
         py::arg("strict") = false, py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
         py::arg("labels") = Labels(), py::arg("label_warnings") = no_patterns,
         py::arg("by_hand") = JointNames(), py::arg("mappings") = py::none(),
-        py::arg("read") = ReadOptions(), py::arg("rebuild") = false,
+        py::arg("read") = ReadOptions(), py::arg("rebuild") = false, py::arg("remote") = py::none(),
         py::arg("progress") = py::none(), py::arg("details") = py::none(),
         R"doc(Adds motion files to a database, with the copies that it was built with.
 

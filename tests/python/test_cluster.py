@@ -139,6 +139,43 @@ def test_an_evaluation_finds_the_same_on_a_cluster(
 
 
 @pytest.mark.filterwarnings("default")
+def test_a_database_is_the_same_although_a_worker_is_killed(
+    tmp_path: Path, library: Path, dask: Cluster
+) -> None:
+    sources = tmp_path / "sources"
+    for copy in ("first", "second"):
+        shutil.copytree(library, sources / copy)
+    (sources / "broken.bvh").write_text("HIERARCHY\n", "utf-8")
+    built = {"mirror": True, "keep_duplicates": True}
+    here = sparse_mocap.build_database([sources], tmp_path / "here.smdb", **built)
+
+    def kill_one(done: int, total: int, what: str) -> None:
+        if done == 3:
+            dask.workers[0].kill()
+
+    with cluster(dask.address) as workers:
+        there = sparse_mocap.build_database(
+            [sources], tmp_path / "there.smdb", workers=workers, progress=kill_one, **built
+        )
+    assert dask.workers[0].wait() != 0
+    assert dask.workers[1].poll() is None
+    assert (tmp_path / "there.smdb").read_bytes() == (tmp_path / "here.smdb").read_bytes()
+    assert there.num_files == here.num_files == 24
+    assert there.skipped == here.skipped
+
+
+@pytest.mark.filterwarnings("default")
+def test_the_command_builds_databases_on_the_scheduler(
+    cli: Cli, tmp_path: Path, library: Path, dask: Cluster, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(library.parent)  # workers are elsewhere
+    for path, more in (("here.smdb", ()), ("there.smdb", ("--scheduler", dask.address))):
+        result = cli("database", "build", library.name, "-o", tmp_path / path, *more)
+        assert result.exit_code == 0, result.output
+    assert (tmp_path / "there.smdb").read_bytes() == (tmp_path / "here.smdb").read_bytes()
+
+
+@pytest.mark.filterwarnings("default")
 def test_says_what_is_wrong_with_a_scheduler(dask: Cluster) -> None:
     dask.stop()
     with (

@@ -6,6 +6,7 @@ from __future__ import annotations
 import functools
 import json
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +22,10 @@ from .. import (
     read_mapping,
 )
 from ..motion_files import read_options
+from ..workers import cluster
 from .console import import_bar, warn
 from .database_info import described, show
-from .options import FilePath, reading_options
+from .options import FilePath, reading_options, scheduler_option
 
 __all__ = ["add", "build", "database", "drop", "info_command"]
 
@@ -53,17 +55,23 @@ _IMPORT_OPTIONS = (
         "--threads", "num_threads", type=click.IntRange(0, 1024), default=0,
         help="Number of threads; 0, the default, uses all processors. Does not affect the result.",
     ),
+    scheduler_option,
 )  # fmt: skip
 
 
 def _import_options(command: Callable[..., Any]) -> Callable[..., Any]:
     @functools.wraps(command)
     def with_mappings(
-        *args: Any, mapping_path: Path | None, reading: dict[str, Any], **options: Any
+        *args: Any,
+        mapping_path: Path | None,
+        reading: dict[str, Any],
+        scheduler: str | None,
+        **options: Any,
     ) -> Any:
-        by_hand = read_mapping(mapping_path) if mapping_path else {}
-        read = read_options(**reading)
-        return command(*args, by_hand=by_hand, mappings=mapping_folder(), read=read, **options)
+        options["by_hand"] = read_mapping(mapping_path) if mapping_path else {}
+        options["read"] = read_options(**reading)
+        with nullcontext() if scheduler is None else cluster(scheduler) as workers:
+            return command(*args, mappings=mapping_folder(), workers=workers, **options)
 
     with_options = reading_options(with_mappings)
     for option in reversed(_IMPORT_OPTIONS):

@@ -3,13 +3,9 @@
 
 from __future__ import annotations
 
-import atexit
 import functools
-import hashlib
-import json
-import tempfile
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,23 +14,20 @@ import click
 import numpy as np
 from rich.table import Table
 
-from .. import MotionDatabase, _core, build_database, mapping_folder
 from ..evaluation import (
     SCENARIOS,
     Contender,
     Evaluation,
     Settings,
     contenders,
-    motion_files,
     variants,
 )
 from ..evaluation import evaluate as run_evaluation
 from ..evaluation.movement import DRIFT_AFTER_S
-from ..files import remove_folder
 from ..methods import DEFAULT_METHOD, Experiment, method_info, methods, renamed_preset
 from ..workers import cluster
-from .console import ProgressCallback, print_table, progress_bar, warn, write_json
-from .evaluated_files import chosen_pairs, with_files
+from .console import print_table, progress_bar, warn, write_json
+from .evaluated_files import DEFAULT_FPS, chosen_pairs, evaluation_database, with_files
 from .options import (
     PAPER_SITES,
     FilePath,
@@ -48,8 +41,6 @@ from .options import (
 )
 
 __all__ = ["evaluate"]
-
-DEFAULT_FPS = 25.0
 
 
 def _simulation_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -176,8 +167,8 @@ def _evaluated(
     executor = nullcontext() if scheduler is None else cluster(scheduler)
     with (
         progress_bar("Evaluating") as progress,
-        _database(source, cache, fps, progress) as database,
         executor as workers,
+        evaluation_database(source, cache, fps, progress, workers) as database,
     ):
         if len(runs) > 1:
             runs = with_files(database, runs)
@@ -257,40 +248,6 @@ def _experiments(names: Sequence[str], wanted: Sequence[str]) -> list[tuple[str,
                 f"unknown experiment {name!r}; {choices}", param_hint="'--experiment'"
             )
     return [pair for pair in known if not wanted or pair[1].name in wanted]
-
-
-@contextmanager
-def _database(
-    source: Path, cache: Path | None, fps: float, progress: ProgressCallback
-) -> Iterator[MotionDatabase]:
-    """Yields the folder's database with mirrored copies, from the cache if nothing has changed."""
-    with tempfile.TemporaryDirectory(
-        prefix="sparse_mocap_", ignore_cleanup_errors=True
-    ) as temporary:
-        atexit.register(remove_folder, temporary)  # Windows removes no database that is open
-        path = Path(temporary) / "evaluation.smdb"
-        if cache is not None:
-            cache.mkdir(parents=True, exist_ok=True)
-            rate = "" if fps == DEFAULT_FPS else f"{fps:g}_hz_"
-            path = cache.absolute() / f"evaluation_{rate}{_fingerprint(source)}.smdb"
-        if not path.exists():
-            build_database(
-                [source],
-                path,
-                rate_hz=fps,
-                mirror=True,
-                mappings=mapping_folder(),
-                progress=progress,
-            )
-        yield MotionDatabase(path)
-
-
-def _fingerprint(source: Path) -> str:
-    files = {path for same_name in motion_files(source).values() for path in same_name}
-    files |= set(source.rglob("*.[aA][sS][fF]"))
-    files.add(Path(_core.__file__))  # another version may build a different database
-    seen = [[str(path), path.stat().st_size, path.stat().st_mtime_ns] for path in sorted(files)]
-    return hashlib.sha256(json.dumps(seen).encode()).hexdigest()[:12]
 
 
 def _write(

@@ -1,17 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which files ``sparse-mocap evaluate`` trains on and tests."""
+"""Which files ``sparse-mocap evaluate`` trains on and tests, and their database."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import atexit
+import hashlib
+import json
+import tempfile
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from pathlib import Path
 
 import click
 
-from .. import MotionDatabase
-from ..evaluation import Settings, choose_tests
-from .console import warn
+from .. import MotionDatabase, _core, build_database, mapping_folder
+from ..evaluation import Settings, choose_tests, motion_files
+from ..files import remove_folder
+from .console import ProgressCallback, warn
 
-__all__ = ["chosen_pairs", "with_files"]
+__all__ = ["DEFAULT_FPS", "chosen_pairs", "evaluation_database", "with_files"]
+
+DEFAULT_FPS = 25.0
 
 
 def chosen_pairs(training: str | None, tests: str | None) -> tuple[tuple[str, str], ...]:
@@ -34,3 +44,42 @@ def with_files(
         else:
             warn([f"not run, since its files are not there: {title}"])
     return there
+
+
+@contextmanager
+def evaluation_database(
+    source: Path,
+    cache: Path | None,
+    fps: float,
+    progress: ProgressCallback,
+    workers: Executor | None,
+) -> Iterator[MotionDatabase]:
+    """Yields the folder's database with mirrored copies, from the cache if nothing has changed."""
+    with tempfile.TemporaryDirectory(
+        prefix="sparse_mocap_", ignore_cleanup_errors=True
+    ) as temporary:
+        atexit.register(remove_folder, temporary)  # Windows removes no database that is open
+        path = Path(temporary) / "evaluation.smdb"
+        if cache is not None:
+            cache.mkdir(parents=True, exist_ok=True)
+            rate = "" if fps == DEFAULT_FPS else f"{fps:g}_hz_"
+            path = cache.absolute() / f"evaluation_{rate}{_fingerprint(source)}.smdb"
+        if not path.exists():
+            build_database(
+                [source],
+                path,
+                rate_hz=fps,
+                mirror=True,
+                mappings=mapping_folder(),
+                progress=progress,
+                workers=workers,
+            )
+        yield MotionDatabase(path)
+
+
+def _fingerprint(source: Path) -> str:
+    files = {path for same_name in motion_files(source).values() for path in same_name}
+    files |= set(source.rglob("*.[aA][sS][fF]"))
+    files.add(Path(_core.__file__))  # another version may build a different database
+    seen = [[str(path), path.stat().st_size, path.stat().st_mtime_ns] for path in sorted(files)]
+    return hashlib.sha256(json.dumps(seen).encode()).hexdigest()[:12]

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sparse_mocap/base/progress.hpp"
+#include "sparse_mocap/database/file_work.hpp"
 #include "sparse_mocap/formats/mapping_file.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
 
@@ -25,6 +26,7 @@ struct ImportOptions {
   bool is_strict = false;            // stop at the first file that cannot be used or is doubtful
   bool keep_duplicates = false;      // also take files whose motion is there already
   int num_threads = 0;               // 0: one a processor; the result is the same
+  RemoteWork remote;                 // does the work on files instead; the result is the same
   std::map<std::filesystem::path, FileLabels> labels;  // by the paths of find_source_files
   std::vector<std::string> label_warnings;             // one line each, for the report
   MappingChoice mapping;                               // written by hand

@@ -122,37 +122,35 @@ Clip clip_of(const SourceFile& file, const SourceHashes& hashes, const Motion& m
 
 }  // namespace
 
-Outcome<SurveyedFile> survey_file(const SourceFile& file, const ReadOptions& options,
-                                  const MappingChoice& choice, const std::stop_token& stop) {
-  return outcome_of<SurveyedFile>(file, [&] {
+Outcome<SurveyedFile> survey_file(const SurveyRequest& request, const std::stop_token& stop) {
+  return outcome_of<SurveyedFile>(request.file, [&] {
     SurveyedFile surveyed;
-    surveyed.hashes = hashes_of(file.path, options);
-    const MotionFile read = read_with_frames(file, options);
+    surveyed.hashes = hashes_of(request.file.path, request.read);
+    const MotionFile read = read_with_frames(request.file, request.read);
     stop_if_asked(stop);
-    surveyed.bones = map_as_chosen(read.motion, choice).bones;
+    surveyed.bones = map_as_chosen(read.motion, request.mapping).bones;
     surveyed.num_frames = read.motion.num_frames();
     surveyed.duration_s = read.motion.duration_s();
     return surveyed;
   });
 }
 
-Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& hashes,
-                                  const Skeleton& standard, const CopyOptions& copies,
-                                  const ReadOptions& options, const MappingChoice& choice,
-                                  bool is_strict, const std::stop_token& stop) {
+Outcome<ImportedFile> import_file(const ImportRequest& request, const std::stop_token& stop) {
+  const SourceFile& file = request.file;
   return outcome_of<ImportedFile>(file, [&] {
     ImportedFile out;
-    const MotionFile read = read_with_frames(file, options);
+    const MotionFile read = read_with_frames(file, request.read);
     stop_if_asked(stop);
-    const SkeletonMapping mapping = map_as_chosen(read.motion, choice);
+    const SkeletonMapping mapping = map_as_chosen(read.motion, request.mapping);
     std::vector<std::string> texts = mapping.warnings;
-    const Motion motion = to_standard(read.motion, mapping, with_extremities(standard), &texts);
+    const Skeleton standard = with_extremities(make_standard_skeleton(request.bones));
+    const Motion motion = to_standard(read.motion, mapping, standard, &texts);
     out.faults = check_clip(read.motion, mapping, motion);
     for (const ClipFault& fault : out.faults)
-      if (fault.is_refused || is_strict) throw FormatError({file.path}, fault.text);
+      if (fault.is_refused || request.is_strict) throw FormatError({file.path}, fault.text);
     out.skeleton = described(read.motion.skeleton, mapping);
     out.bones = mapping.bones;
-    Clip clip = clip_of(file, hashes, read.motion);
+    Clip clip = clip_of(file, request.hashes, read.motion);
     clip.skeleton = out.skeleton.id;
     for (std::size_t e = 0; e < mapping.extremities.size(); ++e)
       clip.has_extremity[e] = mapping.extremities[e].joint >= 0;
@@ -165,7 +163,7 @@ Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& ha
       out.warnings.push_back(file.path.filename().string() + ": " + text);
       ++clip.warnings[kind_of_warning(text)];
     }
-    ClipMaker(copies, stop, out).add_mirrored(clip, motion);
+    ClipMaker(request.copies, stop, out).add_mirrored(clip, motion);
     if (out.clips.empty() || out.clips.front().is_copy())
       throw FormatError({file.path}, "is too short for the database's frame rate");
     return out;

@@ -51,13 +51,24 @@ struct CopyOptions {
   std::vector<double> tempos;
 };
 
-// Both throw Cancelled soon after stop is requested. is_strict: any fault of a clip refuses it.
-Outcome<SurveyedFile> survey_file(const SourceFile& file, const ReadOptions& options,
-                                  const MappingChoice& choice, const std::stop_token& stop);
-Outcome<ImportedFile> import_file(const SourceFile& file, const SourceHashes& hashes,
-                                  const Skeleton& standard, const CopyOptions& copies,
-                                  const ReadOptions& options, const MappingChoice& choice,
-                                  bool is_strict, const std::stop_token& stop);
+// What is asked about a file before a database's skeleton is known.
+struct SurveyRequest {
+  SourceFile file;
+  ReadOptions read;
+  MappingChoice mapping;
+};
+
+// And when it is.
+struct ImportRequest : SurveyRequest {
+  SourceHashes hashes;
+  StandardBones bones;  // of the database's skeleton
+  CopyOptions copies;
+  bool is_strict = false;  // any fault of a clip refuses it
+};
+
+// Both throw Cancelled soon after stop is requested.
+Outcome<SurveyedFile> survey_file(const SurveyRequest& request, const std::stop_token& stop);
+Outcome<ImportedFile> import_file(const ImportRequest& request, const std::stop_token& stop);
 
 // A warning without what differs from file to file: numbers become '#', quoted names '...'.
 std::string kind_of_warning(const std::string& warning);

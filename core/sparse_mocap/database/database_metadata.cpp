@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "sparse_mocap/database/clip_json.hpp"
 #include "sparse_mocap/motion/standard_skeleton.hpp"
 #include "sparse_mocap/sensors/filter.hpp"
 
@@ -30,39 +31,6 @@ json skeleton_json(const Skeleton& skeleton) {
   return joints;
 }
 
-std::vector<std::string> names_of_extremities(const Clip& clip) {
-  std::vector<std::string> names;
-  for (std::size_t e = 0; e < clip.has_extremity.size(); ++e)
-    if (clip.has_extremity[e]) names.emplace_back(extremity_names()[e]);
-  return names;
-}
-
-json clip_json(const Clip& clip) {
-  json entry{{"name", clip.name},
-             {"actor", clip.actor},
-             {"class", clip.motion_class},
-             {"source", clip.source},
-             {"source_hash", clip.source_hash},
-             {"mirrored", clip.is_mirrored},
-             {"reversed", clip.is_reversed},
-             {"tempo", clip.tempo},
-             {"begin", clip.begin},
-             {"end", clip.end},
-             {"source_frames", clip.source_frames},
-             {"source_rate_hz", clip.source_rate_hz}};
-  const auto put = [&](const char* key, const std::string& value) {
-    if (!value.empty()) entry[key] = value;
-  };
-  put("skeleton", clip.skeleton);
-  put("skeleton_hash", clip.skeleton_hash);
-  put("origin", clip.origin);
-  put("license", clip.license);
-  if (!clip.warnings.empty()) entry["warnings"] = clip.warnings;
-  const auto extremities = names_of_extremities(clip);
-  if (!extremities.empty()) entry["extremities"] = extremities;
-  return entry;
-}
-
 json clips_json(const std::vector<Clip>& clips) {
   json entries = json::array();
   for (const Clip& clip : clips) entries.push_back(clip_json(clip));
@@ -79,42 +47,13 @@ json left_out_json(const std::vector<LeftOut>& files) {
 json sources_json(const SourceRecord& sources) {
   json skeletons = json::array();
   for (const auto& skeleton : sources.skeletons)
-    skeletons.push_back({{"id", skeleton.id},
-                         {"num_joints", skeleton.num_joints},
-                         {"joints", skeleton.joints},
-                         {"unit_scale", skeleton.unit_scale}});
+    skeletons.push_back(source_skeleton_json(skeleton));
   return {{"skeletons", skeletons},
           {"skipped", left_out_json(sources.skipped)},
           {"duplicates", left_out_json(sources.duplicates)}};
 }
 
 // --- Reading -------------------------------------------------------------------------------------
-
-Clip clip_from(const json& entry) {
-  Clip clip;
-  clip.name = entry.at("name").get<std::string>();
-  clip.actor = entry.at("actor").get<std::string>();
-  clip.motion_class = entry.at("class").get<std::string>();
-  clip.source = entry.at("source").get<std::string>();
-  clip.source_hash = entry.at("source_hash").get<std::string>();
-  clip.is_mirrored = entry.at("mirrored").get<bool>();
-  clip.is_reversed = entry.at("reversed").get<bool>();
-  clip.tempo = entry.at("tempo").get<double>();
-  clip.begin = entry.at("begin").get<int>();
-  clip.end = entry.at("end").get<int>();
-  // Not in every database:
-  clip.skeleton = entry.value("skeleton", "");
-  clip.skeleton_hash = entry.value("skeleton_hash", "");
-  clip.origin = entry.value("origin", "");
-  clip.license = entry.value("license", "");
-  clip.source_frames = entry.value("source_frames", 0);
-  clip.source_rate_hz = entry.value("source_rate_hz", 0.0);
-  clip.warnings = entry.value("warnings", std::map<std::string, int>());
-  const auto extremities = entry.value("extremities", std::set<std::string>());
-  for (std::size_t e = 0; e < clip.has_extremity.size(); ++e)
-    clip.has_extremity[e] = extremities.contains(std::string(extremity_names()[e]));
-  return clip;
-}
 
 std::vector<LeftOut> left_out_from(const json& entries) {
   std::vector<LeftOut> files;
@@ -169,11 +108,7 @@ class MetadataReader {
     if (!container_.metadata().contains("sources")) return;  // not in every database
     const json sources = json::parse(text("sources"));
     for (const auto& entry : sources.at("skeletons")) {
-      SourceSkeleton skeleton;
-      skeleton.id = entry.at("id").get<std::string>();
-      skeleton.num_joints = entry.at("num_joints").get<int>();
-      skeleton.joints = entry.at("joints").get<std::map<std::string, std::string>>();
-      skeleton.unit_scale = entry.at("unit_scale").get<double>();
+      SourceSkeleton skeleton = source_skeleton_from(entry);
       if (skeleton.id.empty() || skeleton.num_joints < 1 ||
           !(skeleton.unit_scale > 0.0 && skeleton.unit_scale < 1e9))
         refuse("the skeleton '" + skeleton.id + "' of its sources is impossible");

@@ -28,6 +28,29 @@ BodyKey body_key(const std::string& actor, const StandardBones& bones) {
   return key;
 }
 
+// Passes the outcome of each request to take, in their order, whoever does the work.
+template <typename Request, typename Work, typename Decode, typename Take, typename Show>
+void work_on_files(const ImportOptions& options, std::size_t count, const Request& request,
+                   const Work& work, const Decode& decode, const Take& take, const Show& show) {
+  if (!options.remote) {
+    const auto here = [&](std::size_t i, const std::stop_token& stop) {
+      return work(request(i), stop);
+    };
+    return work_in_order(count, options.num_threads, here, take, show);
+  }
+  std::vector<std::string> requests;
+  for (std::size_t i = 0; i < count; ++i) requests.push_back(encoded(request(i)));
+  const NextAnswer next = options.remote(std::move(requests));
+  for (std::size_t i = 0; i < count; ++i) {
+    std::optional<std::string> answer;
+    do {
+      show(i);
+      answer = next();
+    } while (!answer);
+    take(i, decode(*answer));
+  }
+}
+
 std::uint64_t sum_of_bytes(const std::vector<SourceFile>& files) {
   std::uint64_t sum = 0;
   for (const auto& file : files) sum += file.num_bytes;
@@ -40,10 +63,14 @@ Importer::Importer(const std::vector<fs::path>& sources, const ImportOptions& op
                    const Progress& progress)
     : options_(options),
       progress_(progress),
+      mapping_(options.mapping),
       files_(find_source_files(sources, options.exclude, options.read)) {
   report_.warnings = options.label_warnings;
   if (auto others = other_formats_in(sources, options.read); !others.empty())
     report_.warnings.push_back(std::move(others));
+  if (!options.remote || mapping_.remembered.empty()) return;
+  mapping_.by_rig = remembered_mappings(mapping_.remembered);
+  mapping_.remembered.clear();
 }
 
 // --- Labels --------------------------------------------------------------------------------------
@@ -67,6 +94,10 @@ ReadOptions Importer::read_options(const SourceFile& file) const {
   const auto at = options_.labels.find(file.path);
   if (at != options_.labels.end() && at->second.rate_hz > 0.0) options.rate_hz = at->second.rate_hz;
   return options;
+}
+
+SurveyRequest Importer::survey_request(std::size_t file) const {
+  return {files_[file], read_options(files_[file]), mapping_};
 }
 
 // --- Progress and report -------------------------------------------------------------------------
@@ -118,9 +149,6 @@ std::vector<StandardBones> Importer::survey() {
   std::set<BodyKey> seen;
   std::vector<StandardBones> bodies;
   begin_pass(files_.size(), sum_of_bytes(files_), 2);
-  const auto work = [&](std::size_t i, const std::stop_token& stop) {
-    return survey_file(files_[i], read_options(files_[i]), options_.mapping, stop);
-  };
   const auto take = [&](std::size_t i, const Outcome<SurveyedFile>& outcome) {
     const auto* surveyed = std::get_if<SurveyedFile>(&outcome);
     count(files_[i], surveyed != nullptr ? surveyed->num_frames : 0);
@@ -134,8 +162,9 @@ std::vector<StandardBones> Importer::survey() {
     num_source_seconds_ += surveyed->duration_s;
     pending_.push_back({i, surveyed->hashes});
   };
-  work_in_order(files_.size(), options_.num_threads, work, take,
-                [&](std::size_t i) { show(files_[i]); });
+  work_on_files(
+      options_, files_.size(), [&](std::size_t i) { return survey_request(i); }, survey_file,
+      decoded_survey, take, [&](std::size_t i) { show(files_[i]); });
   return bodies;
 }
 
@@ -213,11 +242,9 @@ void Importer::import(DatabaseContent& content, const CopyOptions& copies) {
   std::uint64_t num_bytes = 0;
   for (const auto& pending : pending_) num_bytes += files_[pending.file].num_bytes;
   begin_pass(pending_.size(), num_bytes, 1);
-  const auto work = [&](std::size_t i, const std::stop_token& stop) {
-    const Pending& pending = pending_[i];
-    return import_file(files_[pending.file], pending.hashes, content.skeleton, copies,
-                       read_options(files_[pending.file]), options_.mapping, options_.is_strict,
-                       stop);
+  const auto request = [&](std::size_t i) {
+    return ImportRequest{survey_request(pending_[i].file), pending_[i].hashes,
+                         bones_of(content.skeleton), copies, options_.is_strict};
   };
   const auto take = [&](std::size_t i, Outcome<ImportedFile> outcome) {
     const SourceFile& file = files_[pending_[i].file];
@@ -227,7 +254,7 @@ void Importer::import(DatabaseContent& content, const CopyOptions& copies) {
     replaced_.erase(file.name);
     skip(file, std::get<FormatError>(outcome));
   };
-  work_in_order(pending_.size(), options_.num_threads, work, take,
+  work_on_files(options_, pending_.size(), request, import_file, decoded_import, take,
                 [&](std::size_t i) { show(files_[pending_[i].file]); });
   remove_replaced(content, num_old_clips);
   sort_doubtful();

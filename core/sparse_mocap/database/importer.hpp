@@ -48,6 +48,7 @@ class Importer {
 
   void label(const SourceFile& file, Clip& clip) const;
   ReadOptions read_options(const SourceFile& file) const;
+  SurveyRequest survey_request(std::size_t file) const;
   void begin_pass(std::size_t num_files, std::uint64_t num_bytes, std::size_t num_passes_left);
   void show(const SourceFile& file) const;
   void count(const SourceFile& file, int num_frames);
@@ -62,6 +63,7 @@ class Importer {
 
   const ImportOptions& options_;
   const Progress& progress_;
+  MappingChoice mapping_;
   std::vector<SourceFile> files_;
   std::vector<Pending> pending_;
   std::map<SourceHashes, std::size_t> first_of_hash_;

@@ -82,12 +82,23 @@ JointNames remembered_mapping(const std::filesystem::path& folder, const Skeleto
   return std::filesystem::exists(path, ignored) ? read_mapping(path) : JointNames();
 }
 
+std::map<std::string, JointNames> remembered_mappings(const std::filesystem::path& folder) {
+  std::map<std::string, JointNames> mappings;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+    if (entry.path().extension() == ".json")
+      mappings.emplace(entry.path().stem().string(), read_mapping(entry.path()));
+  return mappings;
+}
+
 SkeletonMapping map_as_chosen(const Motion& source, const MappingChoice& choice) {
   const auto has = [&](const auto& pair) { return source.skeleton.find(pair.second) >= 0; };
   JointNames by_hand;
   if (std::all_of(choice.by_hand.begin(), choice.by_hand.end(), has)) by_hand = choice.by_hand;
   if (by_hand.empty() && !choice.remembered.empty())
     by_hand = remembered_mapping(choice.remembered, source.skeleton);
+  const auto rig = choice.by_rig.find(remembered_mapping_path({}, source.skeleton).stem().string());
+  if (by_hand.empty() && rig != choice.by_rig.end()) by_hand = rig->second;
   SkeletonMapping mapping = map_skeleton(source, by_hand);
   if (!by_hand.empty()) mapping.warnings.emplace_back("the body was mapped by hand");
   return mapping;

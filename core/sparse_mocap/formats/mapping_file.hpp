@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "sparse_mocap/retargeting/skeleton_mapping.hpp"
 
@@ -25,10 +27,15 @@ std::filesystem::path remembered_mapping_path(const std::filesystem::path& folde
 // Throws FormatError when what is kept cannot be read.
 JointNames remembered_mapping(const std::filesystem::path& folder, const Skeleton& rig);
 
+// All mappings that the folder keeps, by the names of their files without the ending.
+// Throws FormatError when one cannot be read.
+std::map<std::string, JointNames> remembered_mappings(const std::filesystem::path& folder);
+
 // The mappings that a user wrote by hand, for files of any skeleton.
 struct MappingChoice {
-  JointNames by_hand;                // for skeletons that have all of these joints
-  std::filesystem::path remembered;  // a folder of mappings for others; empty: none
+  JointNames by_hand;                          // for skeletons that have all of these joints
+  std::filesystem::path remembered;            // a folder of mappings for others; empty: none
+  std::map<std::string, JointNames> by_rig{};  // or these, as remembered_mappings gives them
 };
 
 // map_skeleton with the mapping by hand for such a skeleton; a warning says that there is one.
