@@ -174,7 +174,7 @@ class TrainingClip:
         motion_class: str = "",
         readings: Readings | None = None,
     ) -> None:
-        """Takes a motion on a standard skeleton; an empty motion_class is unknown.
+        """Takes a motion on a standard skeleton, feet and hands or not; an empty class is unknown.
 
         readings were recorded with the motion, at its rate; None: they are simulated.
         """

@@ -18,6 +18,7 @@ from ._core import (
     map_skeleton,
     remembered_mapping,
     remembered_mapping_path,
+    with_extremities,
     write_mapping,
 )
 from .settings_folder import settings_folder
@@ -64,12 +65,18 @@ def find_mapping(
 
 
 def to_standard(
-    motion: Motion, skeleton: Skeleton | None = None, by_hand: Mapping[str, str] | None = None
+    motion: Motion,
+    skeleton: Skeleton | None = None,
+    by_hand: Mapping[str, str] | None = None,
+    *,
+    extremities: bool = False,
 ) -> tuple[Motion, list[str]]:
     """The motion on a standard skeleton (None: with its own proportions), and warnings.
 
-    The joints are mapped as by find_mapping. Raises MappingError.
+    extremities: also its feet, toes and hands, relaxed where it has none. The joints are mapped as by find_mapping. Raises MappingError.
     """
     mapping, notes = find_mapping(motion, by_hand)
     standard, warnings = mapping.to_standard(motion, skeleton)
+    if extremities:
+        standard, _ = mapping.to_standard(motion, with_extremities(standard.skeleton))
     return standard, notes + warnings

@@ -159,9 +159,10 @@ database, model and body (a standard skeleton) are given where the method needs 
 excluded_clips are indices of database clips that are not used. tracker_* as in
 ReadingStream. Raises ValueError unless tracker_origin_m has three numbers.)doc");
   py::class_<TrainingClip>(m, "TrainingClip", "One example that a model is trained from.")
-      .def(py::init(&clip_from), py::arg("name"), py::arg("motion"), py::kw_only(),
-           py::arg("motion_class") = "", py::arg("readings") = py::none(),
-           R"doc(Takes a motion on a standard skeleton; an empty motion_class is unknown.
+      .def(
+          py::init(&clip_from), py::arg("name"), py::arg("motion"), py::kw_only(),
+          py::arg("motion_class") = "", py::arg("readings") = py::none(),
+          R"doc(Takes a motion on a standard skeleton, feet and hands or not; an empty class is unknown.
 
 readings were recorded with the motion, at its rate; None: they are simulated.)doc");
   m.def("train", &train, py::arg("method"), py::arg("clips"), py::kw_only(), py::arg("preset") = "",

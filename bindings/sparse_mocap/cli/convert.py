@@ -13,7 +13,6 @@ from .. import (
     MotionDatabase,
     read_motion,
     to_standard,
-    with_extremities,
     write_acclaim,
     write_bvh,
     write_positions,
@@ -54,9 +53,7 @@ def convert(
     motion, warnings = read_motion(clip, **reading)
     if skeleton != "own" or ending == ".csv":
         target = None if skeleton == "own" else MotionDatabase(skeleton).skeleton
-        if extremities:
-            target = with_extremities(target or to_standard(motion)[0].skeleton)
-        motion, more = to_standard(motion, target)
+        motion, more = to_standard(motion, target, extremities=extremities)
         warnings += more
     if fps is not None:
         motion = motion.resampled(fps)

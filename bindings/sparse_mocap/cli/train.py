@@ -79,7 +79,7 @@ def train(
 
 def _example(path: Path, take: Path | None) -> TrainingClip:
     motion, warnings = read_motion(path)
-    standard, more = to_standard(motion)
+    standard, more = to_standard(motion, extremities=True)
     warn([f"{path.name}: {line}" for line in [*warnings, *more]])
     readings = None if take is None else _readings(take, standard)
     return TrainingClip(path.stem, standard, readings=readings)

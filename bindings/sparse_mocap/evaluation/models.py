@@ -45,5 +45,5 @@ class Trainer:
 
     def _training_clip(self, index: int) -> TrainingClip:
         clip = self._clips[index]
-        motion, _ = to_standard(read_motion(source_path(self._files, clip))[0])
+        motion, _ = to_standard(read_motion(source_path(self._files, clip))[0], extremities=True)
         return TrainingClip(clip.name, motion, motion_class=clip.motion_class)

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/eom2014/frame_path.hpp"
 #include "sparse_mocap/eom2014/synthesis.hpp"
 #include "sparse_mocap/motion/contacts.hpp"
 
@@ -39,11 +40,10 @@ std::string rounded(double value) {
   return text;
 }
 
-// The specific force of the nearest training frame, for each reading.
-Eigen::VectorXd force_misfits(const ReadingRows& readings, const SiteModel& site, int window,
-                              const std::vector<int>& begins) {
-  const Eigen::MatrixXd known = training_features(site, begins, window);
-  const Eigen::MatrixXd own = features(readings, site.scale, window);
+// How far the specific force of the nearest training frame is from each reading's; known, own: the
+// features of both.
+Eigen::VectorXd force_misfits(const ReadingRows& readings, const SiteModel& site,
+                              const Eigen::MatrixXd& known, const Eigen::MatrixXd& own) {
   Eigen::VectorXd out(readings.rows());
   for (Eigen::Index t = 0; t < readings.rows(); ++t) {
     Eigen::Index nearest = 0;
@@ -131,14 +131,19 @@ std::vector<PoseEstimate> Reconstructor::solve(const std::vector<Reading>& take,
   progress.report(1, kParts, "reconstructing");
   const SiteModel& site = model_.sites[site_];
   MappedFrames frames = mapped(model_, site, readings, config_);
+  const Eigen::MatrixXd known = training_features(site, model_.begins, config_.window_frames);
+  const Eigen::MatrixXd own = features(readings, site.scale, config_.window_frames);
   frames.poses.col(kHeightChannel) *= leg_scale_;
   frames.root_velocities.leftCols<2>() *= leg_scale_;
   Motion motion = motion_of(skeleton_, config_.rate_hz, frames.poses, frames.root_velocities);
   smooth_rotations(motion, config_.smoothing_passes);
   progress.report(2, kParts, "placing the feet");
   if (config_.stops_skating) stop_skating(motion);
-  return estimates_of(motion, take, frames,
-                      force_misfits(readings, site, config_.window_frames, model_.begins));
+  auto estimates = estimates_of(motion, take, frames, force_misfits(readings, site, known, own));
+  const auto votes = extremity_votes(
+      model_.extremities, frame_posterior(own, known, model_.begins, config_.path_width));
+  for (std::size_t t = 0; t < estimates.size(); ++t) estimates[t].extremities = votes[t];
+  return estimates;
 }
 
 }  // namespace sparse_mocap::eom2014

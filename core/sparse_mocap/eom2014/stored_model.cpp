@@ -118,6 +118,13 @@ MotionModel motion_in(const Model& model, const std::vector<int>& begins, int di
   return {std::move(data), std::move(latent)};
 }
 
+// Models that were trained before feet, toes and hands were kept know none.
+ExtremityRows extremities_in(const Model& model, Eigen::Index num_frames) {
+  if (!model.tensors.contains("extremities"))
+    return ExtremityRows::Zero(num_frames, kExtremityColumns);
+  return model.matrix<double>("extremities", num_frames, kExtremityColumns);
+}
+
 }  // namespace
 
 Model stored(const TrainedModel& trained, const Config& config) {
@@ -133,6 +140,7 @@ Model stored(const TrainedModel& trained, const Config& config) {
   model.set("sequence_begins", begins);
   model.set("poses", trained.motion.data().poses);
   model.set("velocities", trained.motion.data().velocities);
+  model.set("extremities", trained.extremities);
   model.set("latent", trained.motion.latent().X);
   model.set("alpha", trained.motion.latent().pose.alpha);
   model.set("beta", trained.motion.latent().velocity.beta);
@@ -158,7 +166,8 @@ TrainedModel restored(const Model& model, const Config& config) {
                                ".readings"))
       sites.push_back(site_in(model, index, n, config.latent_dimensions, config.window_frames));
   if (sites.empty()) refuse(model, "the model has readings of no site");
-  return {make_standard_skeleton(lengths), std::move(begins), std::move(motion), std::move(sites)};
+  return {make_standard_skeleton(lengths), std::move(begins), std::move(motion),
+          extremities_in(model, n), std::move(sites)};
 }
 
 }  // namespace sparse_mocap::eom2014

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sparse_mocap/eom2014/config.hpp"
+#include "sparse_mocap/eom2014/extremity_rows.hpp"
 #include "sparse_mocap/eom2014/motion_model.hpp"
 #include "sparse_mocap/eom2014/perceptron.hpp"
 #include "sparse_mocap/eom2014/phase_recognition.hpp"
@@ -25,6 +26,7 @@ struct TrainedModel {
   Skeleton skeleton;        // of the first clip's performer
   std::vector<int> begins;  // first frames of the motion model's sequences
   MotionModel motion;
+  ExtremityRows extremities;  // of the motion model's frames
   std::vector<SiteModel> sites;
 };
 

@@ -27,6 +27,7 @@ std::vector<TrainingSequence> for_motion(const std::vector<TrainingSequence>& al
     part.velocities = sequence.velocities.topRows(n - 1);
     part.readings = sequence.readings.topRows(n);
     part.contacts = sequence.contacts.leftCols(n);
+    part.extremities = sequence.extremities.topRows(n);
     left -= n;
     used.push_back(std::move(part));
   }
@@ -105,6 +106,7 @@ TrainedModel trained_model(const Config& config, const std::vector<TrainingClip>
   std::vector<std::vector<Phase>> phases;
   std::vector<SiteModel> sites;
   MotionData data;
+  ExtremityRows extremities;
   for (const int index : sites_of(config)) {
     auto all = training_sequences(clips, {index, config.position_along_bone, config.rate_hz});
     for (auto& sequence : all)
@@ -112,10 +114,12 @@ TrainedModel trained_model(const Config& config, const std::vector<TrainingClip>
     const auto used = for_motion(all, config.motion_frames);
     if (sites.empty()) {
       data = joined(used);
+      extremities.resize(data.poses.rows(), kExtremityColumns);
       for (const auto& sequence : all) phases.push_back(checked_phases(sequence, config.rate_hz));
       drop_rare(phases);
       for (std::size_t s = 0; s < used.size(); ++s) {
         begins.push_back(static_cast<int>(motion_phases.size()));
+        extremities.middleRows(begins.back(), used[s].extremities.rows()) = used[s].extremities;
         motion_phases.insert(motion_phases.end(), phases[s].begin(),
                              phases[s].begin() + used[s].poses.rows());
       }
@@ -135,7 +139,8 @@ TrainedModel trained_model(const Config& config, const std::vector<TrainingClip>
       MotionModel::learnt(data, {config.latent_dimensions, config.iterations}, progress);
   for (auto& site : sites)
     learn_mapping(config, motion.latent().X, begins, motion_phases, site, progress);
-  return {clips.front().motion.skeleton, std::move(begins), std::move(motion), std::move(sites)};
+  return {without_extremities(clips.front().motion.skeleton), std::move(begins), std::move(motion),
+          std::move(extremities), std::move(sites)};
 }
 
 }  // namespace sparse_mocap::eom2014

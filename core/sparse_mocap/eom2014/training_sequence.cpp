@@ -118,7 +118,8 @@ void unwind(const Skeleton& skeleton, const Eigen::MatrixXd& reference, Eigen::M
 // first: the sequence whose angles others lie near; null: it is this one.
 TrainingSequence sequence_of(const TrainingClip& clip, const SequenceSettings& settings,
                              const TrainingSequence* first) {
-  const Motion motion = resampled(clip.motion, settings.rate_hz);
+  const Motion full = resampled(clip.motion, settings.rate_hz);
+  const Motion motion = without_extremities(full);
   if (motion.num_frames() < kFewestFrames) refuse(clip, "is too short to learn from");
   const auto yaw_rad = headings(motion);
   TrainingSequence out;
@@ -128,6 +129,7 @@ TrainingSequence sequence_of(const TrainingClip& clip, const SequenceSettings& s
   if (first != nullptr) unwind(motion.skeleton, first->poses, out.poses);
   out.velocities = velocity_rows(motion, yaw_rad, out.poses);
   out.contacts = foot_contacts(motion);
+  out.extremities = extremity_rows(full);
   out.readings = reading_rows(clip, settings, motion.num_frames());
   return out;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sparse_mocap/eom2014/extremity_rows.hpp"
 #include "sparse_mocap/eom2014/motion_model.hpp"
 #include "sparse_mocap/reconstruction/method_info.hpp"
 
@@ -29,6 +30,7 @@ struct TrainingSequence {
   Eigen::MatrixXd velocities;  // frames - 1 x kNumVelocityChannels, of the steps
   Eigen::Matrix2Xd contacts;   // as foot_contacts
   ReadingRows readings;        // of a sensor at the site
+  ExtremityRows extremities;   // feet, toes and hands
 };
 
 struct SequenceSettings {
@@ -37,7 +39,8 @@ struct SequenceSettings {
   double rate_hz = 30.0;
 };
 
-// The clips, their angles near those of the first. Readings that were recorded with a clip are
+// The clips, their angles near those of the first; feet, toes and hands where their skeletons have
+// them. Readings that were recorded with a clip are
 // used, others are simulated. Throws ConfigError for a clip that is too short, or whose recording
 // lacks the site or a gyroscope.
 std::vector<TrainingSequence> training_sequences(const std::vector<TrainingClip>& clips,

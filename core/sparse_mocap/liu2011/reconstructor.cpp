@@ -6,6 +6,7 @@
 
 #include "sparse_mocap/liu2011/pose_priors.hpp"
 #include "sparse_mocap/retrieval/diagnostics.hpp"
+#include "sparse_mocap/retrieval/extremity_vote.hpp"
 #include "sparse_mocap/retrieval/root_motion.hpp"
 
 namespace sparse_mocap::liu2011 {
@@ -90,6 +91,7 @@ PoseEstimate Reconstructor::told(const Reading& reading, const Eigen::VectorXd& 
   for (const Mat3& R : pose.rotations) estimate.rotations.push_back(Quat(R).normalized());
   estimate.root_position = pose.root_position;
   estimate.contacts = retrieval::root_rates(examples_.database(), weighted).contacts;
+  estimate.extremities = retrieval::extremity_vote(examples_.database(), weighted);
   estimate.diagnostics =
       retrieval::retrieval_diagnostics(examples_.database(), weighted, signals_, signal_rows_,
                                        retrieval::signal_row(reading, signals_));

@@ -127,6 +127,41 @@ TEST_F(EomReconstructor, FindsHowTheSensorIsTurned) {
       EXPECT_LT(poses[t].rotations[j].angularDistance(straight[t].rotations[j]), 0.2);
 }
 
+// Feet and hands turn with the left thigh, so that its rotation tells theirs.
+Motion with_feet(const Motion& motion) {
+  Motion full;
+  full.skeleton = with_extremities(motion.skeleton);
+  full.frame_time_s = motion.frame_time_s;
+  full.root_positions = motion.root_positions;
+  for (int t = 0; t < motion.num_frames(); ++t) {
+    for (int j = 0; j < kNumStandardJoints; ++j) full.rotations.push_back(motion.rotation(t, j));
+    for (int e = 0; e < kNumExtremities; ++e)
+      full.rotations.push_back(motion.rotation(t, standard_joint::lfemur));
+  }
+  return full;
+}
+
+TEST_F(EomReconstructor, FeetAndHandsComeFromTheTrainingFrames) {
+  const Motion truth = with_feet(resampled(walking_motion(360, 120.0), 30.0));
+  const MethodSettings settings{"", {{"iterations", "30"}}};
+  MethodContext context;
+  context.model = std::make_shared<Model>(method().train(
+      settings, {{"walk", "", with_feet(walking_motion(360, 120.0)), {}, {}}}, Progress()));
+  context.sensors = {ankle()};
+  const auto take = take_of(walking_motion(360, 120.0));
+  const auto poses = Reconstructor({"", {}}, context).solve(take, Progress());
+  double sum = 0.0;
+  for (std::size_t t = 0; t < poses.size(); ++t)
+    for (std::size_t e = 0; e < kNumExtremities; ++e) {
+      EXPECT_NEAR(poses[t].extremities.certainty[e], 1.0, 1e-6);
+      sum += poses[t].extremities.R_parent_joint[e].angularDistance(
+          truth.rotation(static_cast<int>(t), extremity_joint(static_cast<int>(e))));
+    }
+  EXPECT_LT(sum / static_cast<double>(poses.size() * kNumExtremities), 5.0 * kRadiansPerDegree);
+  for (const auto& pose : made().solve(take, Progress()))  // trained without feet
+    EXPECT_EQ(pose.extremities.certainty[0], 0.0);
+}
+
 TEST_F(EomReconstructor, AModelComesBackFromItsFileAsItWas) {
   const Config config = with_model({}, *model_);
   const TrainedModel trained = restored(*model_, config);

@@ -143,6 +143,31 @@ TEST(Reconstructor, FollowsOnABodyOfItsOwn) {
   }
 }
 
+TEST(Reconstructor, FeetAndHandsAreThoseOfTheClosestExamples) {
+  const Skeleton full = with_extremities(template_skeleton());
+  const std::vector<Motion> motions{swaying_motion(full, 0, 60, 25.0),
+                                    swaying_motion(full, 0, 60, 25.0)};
+  DatabaseContent content = testing::content_of(motions, 25.0);
+  content.skeleton = template_skeleton();
+  for (Clip& clip : content.clips) clip.has_extremity.fill(true);
+  const auto made = testing::database_of(content);
+  const auto sensors = six_sensors(kBoth);
+  Config config;
+  config.num_neighbours = 4;
+  Reconstructor method(config, {made, nullptr, {}, sensors, {0}});
+  const auto estimates = solve_live(method, readings_of(*made, 0, sensors), Progress());
+  double sum = 0.0;
+  for (std::size_t t = 5; t < estimates.size(); ++t)
+    for (int e = 0; e < kNumExtremities; ++e) {
+      const ExtremityVote& vote = estimates[t].extremities;
+      EXPECT_NEAR(vote.certainty[static_cast<std::size_t>(e)], 1.0, 1e-9);
+      sum += vote.R_parent_joint[static_cast<std::size_t>(e)].angularDistance(
+          motions[0].rotation(static_cast<int>(t), extremity_joint(e)));
+    }
+  const auto count = static_cast<double>(kNumExtremities * (estimates.size() - 5));
+  EXPECT_LT(sum / count, 5.0 * kRadiansPerDegree);
+}
+
 TEST(Reconstructor, WorksWithEveryPrior) {
   const auto sensors = six_sensors(kBoth);
   const auto take = readings_of(*database(), kClip, sensors);
