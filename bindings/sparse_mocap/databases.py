@@ -2,7 +2,7 @@
 """Motion databases: built from motion files, and files added to one.
 
 Both find the files' labels (see labels), leave the rest to the core, and learn then what good and
-poor reconstructions look like (see quality).
+poor reconstructions look like (see quality_calibration).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from . import _core
 from .labels import find_labels
 from .motion_files import read_options
-from .quality import calibrate_quality
+from .quality_calibration import calibrate_quality
 from .workers import in_order
 
 if TYPE_CHECKING:

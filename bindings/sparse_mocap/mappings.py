@@ -73,7 +73,8 @@ def to_standard(
 ) -> tuple[Motion, list[str]]:
     """The motion on a standard skeleton (None: with its own proportions), and warnings.
 
-    extremities: also its feet, toes and hands, relaxed where it has none. The joints are mapped as by find_mapping. Raises MappingError.
+    extremities: with feet, toes and hands, relaxed where the motion has none. The joints are mapped
+    as by find_mapping. Raises MappingError.
     """
     mapping, notes = find_mapping(motion, by_hand)
     standard, warnings = mapping.to_standard(motion, skeleton)

@@ -11,33 +11,33 @@ their performers, and without their kinds of movement.
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import (
-    Clip,
-    MotionDatabase,
-    Reconstruction,
-    standard_joint_names,
-    store_section,
-)
-from .reconstruction import reconstruct
-from .take import SensorRecord, Take
+from ._core import MotionDatabase, PoseEstimate, Reconstruction, standard_joint_names
 
-__all__ = ["Quality", "calibrate_quality", "quality_of"]
+__all__ = [
+    "Evidence",
+    "JudgedFrame",
+    "Quality",
+    "evidence_of",
+    "judged",
+    "judged_frame",
+    "measures_of",
+    "quality_of",
+]
 
 Floats = NDArray[np.float64]
 
 SECTION, VERSION = "quality", 1
-SITES = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
 
-# Of 404 reconstructions of HDM05 and CMU clips, see calibrate_quality(): the logarithm of the error
-# as a part of the mean pose's, by _measures().
-_USUAL = (1.27, 0.69, 1.14, -1.09, -0.34, 0.35)
+# Of 404 reconstructions of HDM05 and CMU clips, see quality_calibration: the logarithm of the error
+# as a part of the mean pose's, by measures_of().
+USUAL = (1.27, 0.69, 1.14, -1.09, -0.34, 0.35)
 _BEST_QUALITY = -0.07  # what it is in best quality beside that
 _TYPICAL_SPREAD_M, _TYPICAL_MISFIT_MPS2 = 0.06, 2.6
 
@@ -50,15 +50,11 @@ _ALIKE_ADVICE = (
     "gyroscopes, or clips of this performer help"
 )
 
-_NUM_JOINTS = len(standard_joint_names())  # those that are judged: no feet, toes and hands
+NUM_JOINTS = len(standard_joint_names())  # those that are judged: no feet, toes and hands
 _FAIR_FROM, _POOR_FROM = 0.65, 0.95  # of the mean pose's error: as many warnings as are due
 _SECONDS_AROUND_S = 1.0  # a second is judged with what is so near to its middle
+_NEEDED = frozenset({"spread_m", "sensor_misfit_mps2", "database_frame"})
 _HOP_FRAMES = 3  # a retrieved movement that goes on moves less in the database from frame to frame
-
-_SHARE = 0.025  # of the database's frames that are reconstructed for a calibration
-_LONGEST_S, _FEWEST_CLIPS = 5.0, 20
-_SETTLES = slice(8, -4)  # frames of a clip in which its neighbours in a row of clips are not felt
-_TRUST = 20.0  # how many reconstructions what is usual counts for
 
 
 @dataclass(frozen=True)
@@ -70,7 +66,7 @@ class Quality:
     share: float
     """The error that is expected, as a part of that of the mean pose held still."""
     second_labels: tuple[str, ...]
-    """The same for each second."""
+    """The same for each second; empty for live poses."""
     is_unlike_the_database: bool
     """Whether it is poor because the sensors read what nothing in the database does."""
     advice: str
@@ -79,14 +75,14 @@ class Quality:
 
 @dataclass(frozen=True)
 class _Calibration:
-    coefficients: tuple[float, ...] = _USUAL
+    coefficients: tuple[float, ...] = USUAL
     spread_m: float = _TYPICAL_SPREAD_M
     """That is typical of clips of the database that are reconstructed from the others."""
     misfit_mps2: float = _TYPICAL_MISFIT_MPS2
 
 
 @dataclass(frozen=True)
-class _Evidence:
+class Evidence:
     """What a reconstruction says of its frames."""
 
     spread_m: Floats
@@ -98,8 +94,9 @@ class _Evidence:
     readings_vary_mps2: float
     poses_vary_m: float
 
-    def part(self, rows: slice) -> _Evidence:
-        return _Evidence(
+    def part(self, rows: slice) -> Evidence:
+        """Returns what is said of some of the frames; what varies stays the whole's."""
+        return Evidence(
             self.spread_m[rows],
             self.misfit_mps2[rows],
             self.frames[rows],
@@ -113,61 +110,65 @@ def quality_of(solved: Reconstruction, database: MotionDatabase | None = None) -
 
     The database is the one that it was made from.
     """
-    if not {"spread_m", "sensor_misfit_mps2", "database_frame"} <= set(solved.diagnostics):
+    if not _NEEDED.issubset(solved.diagnostics):
         return None
-    evidence = _evidence(solved, slice(None))
+    evidence = evidence_of(solved, slice(None))
     calibration = _calibration_of(database)
     offset = _BEST_QUALITY if solved.latency_s is None else 0.0
-    share = _share(evidence, calibration, offset)
     times_s = np.asarray(solved.readings.times_s)
     seconds = []
     for begin_s in np.arange(times_s[0], times_s[-1] + 1e-9, 1.0):
         near = np.flatnonzero(np.abs(times_s - begin_s - 0.5) <= _SECONDS_AROUND_S)
         part = evidence.part(slice(int(near[0]), int(near[-1]) + 1))
         seconds.append(_label(_share(part, calibration, offset)))
-    label = _label(share)
-    is_unlike = _is_unlike(evidence, calibration)
+    return _quality(evidence, calibration, offset, tuple(seconds))
+
+
+class JudgedFrame(NamedTuple):
+    """What a live pose says of itself."""
+
+    spread_m: float
+    misfit_mps2: float
+    database_frame: float
+    specific_force: Floats
+    """(S, 3) m/s^2 that the sensors measured."""
+    positions: Floats
+    """(21, 3) m in the heading frame."""
+
+
+def judged_frame(estimate: PoseEstimate) -> JudgedFrame | None:
+    """Returns what a live pose says of itself; None for a method that retrieves nothing."""
+    told = estimate.diagnostics
+    if not {*_NEEDED, "specific_force_mps2"}.issubset(told):
+        return None
+    return JudgedFrame(
+        float(np.sqrt((told["spread_m"] ** 2).mean())),
+        float(_known_mean(told["sensor_misfit_mps2"])),
+        float(told["database_frame"][0]),
+        told["specific_force_mps2"].reshape(-1, 3),
+        estimate.positions[:NUM_JOINTS],
+    )
+
+
+def judged(frames: Sequence[JudgedFrame], database: MotionDatabase | None = None) -> Quality:
+    """Returns how good successive live poses are likely to be, by the same measure as a take."""
+    evidence = _evidence(
+        np.array([frame.spread_m for frame in frames]),
+        np.array([frame.misfit_mps2 for frame in frames]),
+        np.array([frame.database_frame for frame in frames]),
+        np.array([frame.specific_force for frame in frames]),
+        np.array([frame.positions for frame in frames]),
+    )
+    return _quality(evidence, _calibration_of(database), 0.0, ())
+
+
+def _quality(
+    evidence: Evidence, calibration: _Calibration, offset: float, seconds: tuple[str, ...]
+) -> Quality:
+    share = _share(evidence, calibration, offset)
+    label, is_unlike = _label(share), _is_unlike(evidence, calibration)
     advice = "" if label == "good" else _UNLIKE_ADVICE if is_unlike else _ALIKE_ADVICE
-    return Quality(label, share, tuple(seconds), label == "poor" and is_unlike, advice)
-
-
-def calibrate_quality(database: str | os.PathLike[str]) -> None:
-    """Learns what good and poor reconstructions look like in a database, and keeps it there.
-
-    A few of its clips are reconstructed thrice: without themselves, without their performers, and
-    without their kinds of movement. Databases of a few clips are left alone. Raises FormatError and
-    OSError.
-    """
-    opened = MotionDatabase(database)
-    rows, logarithms, typical = [], [], []
-    for kind, tests, excluded in _held_out(opened):
-        for evidence, share in _reconstructed(opened, tests, excluded):
-            rows.append(_measures(evidence))
-            logarithms.append(np.log(share))
-            if kind == "source":
-                typical.append((evidence.spread_m.mean(), evidence.misfit_mps2.mean()))
-    if not typical:
-        return
-    measures = np.array(rows)
-    residuals = np.array(logarithms) - measures @ np.array(_USUAL)
-    scatter = measures.T @ measures / len(measures)
-    change = np.linalg.solve(
-        measures.T @ measures + _TRUST * (scatter + 1e-6 * np.eye(len(_USUAL))),
-        measures.T @ residuals,
-    )
-    spread_m, misfit_mps2 = np.median(typical, axis=0)
-    found = {
-        "coefficients": [float(value) for value in np.array(_USUAL) + change],
-        "spread_m": float(spread_m),
-        "misfit_mps2": float(misfit_mps2),
-    }
-    store_section(
-        database,
-        SECTION,
-        {"calibration": json.dumps(found)},
-        version=VERSION,
-        rows=opened.rows_hash,
-    )
+    return Quality(label, share, seconds, label == "poor" and is_unlike, advice)
 
 
 def _calibration_of(database: MotionDatabase | None) -> _Calibration:
@@ -180,15 +181,25 @@ def _calibration_of(database: MotionDatabase | None) -> _Calibration:
     )
 
 
-def _evidence(solved: Reconstruction, rows: slice) -> _Evidence:
+def evidence_of(solved: Reconstruction, rows: slice) -> Evidence:
+    """Returns what a reconstruction says of these frames."""
     told = solved.diagnostics
-    force = np.asarray(solved.readings.specific_force)[rows]
-    poses = np.asarray(solved.motion.joint_positions("heading"))[:, :_NUM_JOINTS][rows]
-    misfit = np.asarray(told["sensor_misfit_mps2"])[rows]
-    return _Evidence(
+    return _evidence(
         np.sqrt((np.asarray(told["spread_m"])[rows] ** 2).mean(axis=1)),
-        _known_mean(misfit, axis=1),
+        _known_mean(np.asarray(told["sensor_misfit_mps2"])[rows], axis=1),
         np.asarray(told["database_frame"])[rows, 0],
+        np.asarray(solved.readings.specific_force)[rows],
+        np.asarray(solved.motion.joint_positions("heading"))[:, :NUM_JOINTS][rows],
+    )
+
+
+def _evidence(
+    spread_m: Floats, misfit_mps2: Floats, frames: Floats, force: Floats, poses: Floats
+) -> Evidence:
+    return Evidence(
+        spread_m,
+        misfit_mps2,
+        frames,
         float(np.sqrt(_known_mean(((force - _known_mean(force, axis=0)) ** 2).sum(axis=-1)))),
         float(np.sqrt(((poses - poses.mean(axis=0)) ** 2).sum(axis=-1).mean())),
     )
@@ -201,7 +212,7 @@ def _known_mean(values: Floats, axis: int | None = None) -> Floats:
     return np.asarray(np.where(is_known, values, 0.0).sum(axis=axis) / count)
 
 
-def _measures(evidence: _Evidence) -> Floats:
+def measures_of(evidence: Evidence) -> Floats:
     """Returns what the logarithm of the error is linear in."""
     moves = np.abs(np.diff(evidence.frames))
     return np.array(
@@ -216,8 +227,8 @@ def _measures(evidence: _Evidence) -> Floats:
     )
 
 
-def _share(evidence: _Evidence, calibration: _Calibration, offset: float) -> float:
-    return float(np.exp(_measures(evidence) @ np.array(calibration.coefficients) + offset))
+def _share(evidence: Evidence, calibration: _Calibration, offset: float) -> float:
+    return float(np.exp(measures_of(evidence) @ np.array(calibration.coefficients) + offset))
 
 
 def _label(share: float) -> str:
@@ -226,85 +237,8 @@ def _label(share: float) -> str:
     return "good" if share < _FAIR_FROM else "fair"
 
 
-def _is_unlike(evidence: _Evidence, calibration: _Calibration) -> bool:
+def _is_unlike(evidence: Evidence, calibration: _Calibration) -> bool:
     """Whether readings fit worse than is typical, rather than poses being in doubt."""
     misfit = float(evidence.misfit_mps2.mean()) / calibration.misfit_mps2
     spread = float(evidence.spread_m.mean()) / calibration.spread_m
     return misfit > max(1.0, spread)
-
-
-def _held_out(database: MotionDatabase) -> list[tuple[str, list[int], list[int]]]:
-    """Returns what is held out, clips to reconstruct, and the clips that are hidden then."""
-    clips = database.clips
-    originals = [
-        i for i, c in enumerate(clips) if not (c.is_mirrored or c.is_reversed or c.tempo != 1.0)
-    ]
-    if len(originals) < _FEWEST_CLIPS:
-        return []
-    chance = np.random.default_rng(0)
-    frames = _SHARE * database.num_frames / 3.0
-    found = []
-    for kind in ("source", "actor", "motion_class"):
-        labels = [getattr(clip, kind) for clip in clips]
-        names = sorted({labels[i] for i in originals})
-        if len(names) < 2:
-            continue
-        hidden = set(chance.permutation(names)[: max(1, len(names) // 2)].tolist())
-        tests: list[int] = []
-        for i in chance.permutation([i for i in originals if labels[i] in hidden]).tolist():
-            if sum(_length(database, clips[k]) for k in tests) < frames:
-                tests.append(i)
-        if kind == "source":
-            hidden = {labels[i] for i in tests}
-        excluded = [i for i, label in enumerate(labels) if label in hidden]
-        if tests and len(excluded) < len(clips):
-            found.append((kind, sorted(tests), excluded))
-    return found
-
-
-def _length(database: MotionDatabase, clip: Clip) -> int:
-    return min(clip.end - clip.begin, round(_LONGEST_S * database.rate_hz))
-
-
-def _reconstructed(
-    database: MotionDatabase, tests: Sequence[int], excluded: Sequence[int]
-) -> list[tuple[_Evidence, float]]:
-    """Returns what is said of each clip, and its error as a part of the mean pose's.
-
-    All are performed one after the other in one take, so that the database is prepared once.
-    """
-    lengths = [_length(database, database.clips[i]) for i in tests]
-    rows = np.concatenate(
-        [database.clips[i].begin + np.arange(n) for i, n in zip(tests, lengths, strict=True)]
-    )
-    forces, names = database.array("specific_force_end"), list(database.site_names)
-    times_s = np.arange(len(rows)) / database.rate_hz
-    columns = {site: 3 * names.index(site) for site in SITES}
-    take = Take(
-        {
-            site: SensorRecord(times_s, forces[rows][:, at : at + 3].astype(float))
-            for site, at in columns.items()
-        }
-    )
-    solved = reconstruct(take, database, excluded_clips=excluded, use_gyroscopes=False)
-    numbers = np.round(np.asarray(solved.readings.times_s) * database.rate_hz).astype(int)
-    poses = np.asarray(solved.motion.joint_positions("heading"))[:, :_NUM_JOINTS]
-    truth = database.array("positions")[rows].reshape(len(rows), -1, 3).astype(float)
-    found, begin = [], 0
-    for length in lengths:
-        inner = range(begin, begin + length)[_SETTLES]
-        at = np.flatnonzero((numbers >= inner.start) & (numbers < inner.stop))
-        begin += length
-        if len(at) < 2:
-            continue
-        wanted = truth[numbers[at]]
-        mean = truth[inner.start : inner.stop].mean(axis=0)
-        error, held = (_error_m(wanted, estimate) for estimate in (poses[at], mean))
-        part = slice(int(at[0]), int(at[-1]) + 1)
-        if error > 0.0 and held > 0.0:
-            found.append((_evidence(solved, part), error / held))
-    return found
-
-
-def _error_m(truth: Floats, estimate: Floats) -> float:
-    return float(np.sqrt(((truth - estimate) ** 2).sum(axis=-1).mean(axis=-1)).mean())

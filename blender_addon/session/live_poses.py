@@ -43,11 +43,13 @@ class Quality:
     num_skipped: int = 0
     """Readings that came faster than poses could be made of them."""
     match: str = ""
-    """How well the sensors match the motion database: good, fair or poor."""
+    """How near to the performance the poses are likely to be: good, fair or poor."""
     latency_s: float = 0.0
     """Median time from the sensors' reading to the pose."""
     worst_latency_s: float = 0.0
     """Of 99 in 100 poses."""
+    advice: str = ""
+    """What would help to a better match; empty when it is good."""
 
 
 class LivePoses:
@@ -80,7 +82,7 @@ class LivePoses:
             devices=devices,
             largest_backlog=LARGEST_BACKLOG,
         )
-        self._match = core().report.LiveMatch(_NUM_POSES)
+        self._match = core().report.LiveMatch(_NUM_POSES, motions)
         self.latencies_s: deque[float] = deque(maxlen=_NUM_POSES)
         self._num_poses = 0
 
@@ -103,7 +105,14 @@ class LivePoses:
         if not self.latencies_s:
             return Quality(num_skipped=num_skipped)
         middle, worst = np.quantile(self.latencies_s, [0.5, 0.99])
-        return Quality(self._num_poses, num_skipped, self._match.match, float(middle), float(worst))
+        return Quality(
+            self._num_poses,
+            num_skipped,
+            self._match.match,
+            float(middle),
+            float(worst),
+            self._match.advice,
+        )
 
     def _pose(self, estimate: Any) -> Pose:
         self._num_poses += 1

@@ -13,7 +13,16 @@ import numpy as np
 import numpy.typing as npt
 import pybvh
 import pytest
-from sparse_mocap import Motion, read_motion
+from scipy.spatial.transform import Rotation
+from sparse_mocap import (
+    Motion,
+    MotionDatabase,
+    read_motion,
+    read_take,
+    reconstruct,
+    standard_joint_names,
+    write_bvh,
+)
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # it imports its own dependency by an old name
@@ -116,6 +125,52 @@ def test_generated_motion(library: Path) -> None:
     path = next(iter(sorted(library.glob("*.bvh"))))
     check_against_pybvh(path)
     check_against_bvhio(path)
+
+
+def world_rotations(motion: Motion) -> Points:
+    """(frames, joints, 3, 3) from the rotations in the parents."""
+    local = matrices_of(np.asarray(motion.rotations))
+    turned = local.copy()
+    for joint, parent in enumerate(motion.skeleton.parents):
+        if parent >= 0:
+            turned[:, joint] = turned[:, parent] @ local[:, joint]
+    return turned
+
+
+def matrices_of(quaternions: Points) -> Points:
+    """(..., 3, 3) of (..., 4), w x y z, by SciPy."""
+    flat = Rotation.from_quat(quaternions.reshape(-1, 4)[:, [1, 2, 3, 0]]).as_matrix()
+    return np.asarray(flat.reshape(*quaternions.shape[:-1], 3, 3))
+
+
+def rotations_by_bvhio(root: bvhio.Joint, names: list[str]) -> Points:
+    """(joints, 3, 3) in the world, of the pose that is loaded."""
+    found = {joint.Name: joint.RotationWorld for joint, _, _ in root.layout()}
+    return matrices_of(np.array([[q.w, q.x, q.y, q.z] for q in map(found.__getitem__, names)]))
+
+
+def test_a_reconstruction_with_feet_and_hands_turns_alike_in_public_readers(
+    database: MotionDatabase, take_path: Path, tmp_path: Path
+) -> None:
+    motion = reconstruct(read_take(take_path), database).motion
+    path = tmp_path / "take.bvh"
+    write_bvh(path, motion)
+    names = motion.skeleton.names
+    assert len(names) == len(standard_joint_names()) + 6
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        clip = pybvh.read_bvh_file(path)
+    _, local = clip.to_rotmat()
+    by_name = [clip.joint_names.index(name) for name in names]
+    ours = matrices_of(np.asarray(motion.rotations))
+    np.testing.assert_allclose(np.asarray(local)[:, by_name], ours, atol=1e-6)
+    root = bvhio.readAsHierarchy(str(path))
+    root.loadRestPose()
+    in_rest = rotations_by_bvhio(root, names)  # it lays its axes along the bones
+    for frame in some_frames(motion):
+        root.loadPose(frame)
+        turned = rotations_by_bvhio(root, names) @ in_rest.swapaxes(1, 2)
+        np.testing.assert_allclose(turned, world_rotations(motion)[frame], atol=2e-5)
 
 
 def test_files_of_many_exporters(real_data: Path) -> None:

@@ -19,10 +19,12 @@ from sparse_mocap import (
     add_to_database,
     build_database,
     quality,
+    quality_calibration,
     reconstruct,
 )
 from sparse_mocap.demo_motions import generate_library
-from sparse_mocap.quality import calibrate_quality, quality_of
+from sparse_mocap.quality import quality_of
+from sparse_mocap.quality_calibration import calibrate_quality
 
 RATE_HZ = 10.0
 
@@ -48,7 +50,7 @@ def told(spread_m: list[float], misfit_mps2: list[float], *, best: bool = False)
 
 
 def expected(spread_m: float, misfit_mps2: float) -> float:
-    constant, spread, misfit, readings, poses, _ = quality._USUAL
+    constant, spread, misfit, readings, poses, _ = quality.USUAL
     return exp(
         constant
         + spread * log(spread_m)
@@ -112,7 +114,7 @@ def large(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 
 def test_what_is_tested_is_hidden(large: tuple[Path, Path]) -> None:
     database = MotionDatabase(large[1])
-    held_out = quality._held_out(database)
+    held_out = quality_calibration._held_out(database)
     assert [kind for kind, _, _ in held_out] == ["source", "actor", "motion_class"]
     for kind, tests, excluded in held_out:
         labels = [getattr(clip, kind) for clip in database.clips]
@@ -130,8 +132,8 @@ def test_a_database_learns_what_is_good_and_keeps_it(
     kept = database.section("quality", 1)
     assert kept is not None
     found = json.loads(kept["calibration"])
-    assert len(found["coefficients"]) == len(quality._USUAL)
-    assert np.abs(np.array(found["coefficients"]) - quality._USUAL).max() > 1e-3
+    assert len(found["coefficients"]) == len(quality.USUAL)
+    assert np.abs(np.array(found["coefficients"]) - quality.USUAL).max() > 1e-3
     assert 0.0 < found["spread_m"] < 0.5
     before = path.read_bytes()
     calibrate_quality(path)
@@ -154,7 +156,7 @@ def test_known_movement_is_good_and_noise_is_poor(large: tuple[Path, Path]) -> N
     forces = database.array("specific_force_end")[rows].astype(float)
     times_s = np.arange(clip.end - clip.begin) / database.rate_hz
     chance = np.random.default_rng(1)
-    columns = {site: 3 * database.site_names.index(site) for site in quality.SITES}
+    columns = {site: 3 * database.site_names.index(site) for site in quality_calibration.SITES}
     true = Take({s: SensorRecord(times_s, forces[:, at : at + 3]) for s, at in columns.items()})
     noise = Take(
         {s: SensorRecord(times_s, chance.normal(0.0, 9.0, (len(times_s), 3))) for s in columns}

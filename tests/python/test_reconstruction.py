@@ -30,8 +30,9 @@ from sparse_mocap import (
 )
 from sparse_mocap.capture.sample_log import SAMPLE
 from sparse_mocap.methods import method_info, methods, option_values, renamed_preset
+from sparse_mocap.quality import quality_of
 from sparse_mocap.readings import SensorInput, all_readings
-from sparse_mocap.report import match_of, unit_warnings
+from sparse_mocap.report import LiveMatch, match, match_of, unit_warnings
 
 WAYS = [
     (method.name, best)
@@ -158,6 +159,15 @@ def test_live_poses_are_those_of_the_whole_take(database: MotionDatabase, short:
     np.testing.assert_allclose(
         np.linalg.norm([one.rotations for one in estimates], axis=2), 1, atol=1e-9
     )
+    told = LiveMatch(len(estimates), database)
+    assert told.match == ""
+    for estimate in estimates:
+        told.add(estimate)
+    as_a_take = quality_of(solved, database)
+    assert told.quality is not None
+    assert as_a_take is not None
+    assert told.quality.share == pytest.approx(as_a_take.share, rel=1e-3)
+    assert (told.match, told.advice) == (match(solved, database), as_a_take.advice)
 
 
 def test_a_live_preview_that_falls_behind_uses_the_newest_reading(

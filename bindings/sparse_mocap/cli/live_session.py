@@ -59,7 +59,7 @@ class LiveSession:
         self._file: TextIO | None = None
         self._num_written = 0  # joints
         self._begin_s: float | None = None
-        self._live_match = LiveMatch(_NUM_POSES)
+        self._live_match = LiveMatch(_NUM_POSES, database)
         self.num_poses = 0
         self.latencies_s: deque[float] = deque(maxlen=_NUM_POSES)
         self.step_s: deque[float] = deque(maxlen=_NUM_POSES)
@@ -87,6 +87,11 @@ class LiveSession:
         """How well the sensors match the motion database; empty before there are poses."""
         return self._live_match.match
 
+    @property
+    def advice(self) -> str:
+        """What would help to a better match; empty when it is good."""
+        return self._live_match.advice
+
     def summary(self) -> str:
         """A summary of the session in one line."""
         if not self.num_poses:
@@ -94,7 +99,7 @@ class LiveSession:
         return (
             f"{self.num_poses} poses; sensors match the motion database: {self.match}; delay "
             f"from movement to pose {1e3 * np.median(self.latencies_s):.0f} ms (worst "
-            f"{1e3 * max(self.latencies_s):.0f} ms)"
+            f"{1e3 * max(self.latencies_s):.0f} ms)" + (f"\n{self.advice}" if self.advice else "")
         )
 
     def _add_pose(self, estimate: PoseEstimate) -> None:

@@ -78,4 +78,5 @@ def _reconstruction(session: LiveSession) -> Text:
         f"{session.num_poses} poses  match {session.match}  delay from movement to pose "
         f"{1e3 * np.median(session.latencies_s):.0f} ms, including "
         f"{1e3 * np.median(session.step_s):.1f} ms of computing"
+        + (f"\n{session.advice}" if session.advice else "")
     )

@@ -17,6 +17,7 @@ namespace sparse_mocap {
 // What a method says of a frame beside the pose, by name; the unit is part of the name. Methods
 // that retrieve from a database give
 //   sensor_misfit_mps2  a sensor: retrieved against measured specific force; NaN while it is silent
+//   specific_force_mps2  a sensor, x y z: what it measured, low-passed
 //   spread_m            a joint: weighted deviation of the retrieved positions
 //   clip, database_frame  the ones that the pose is closest to
 using Diagnostics = std::map<std::string, Eigen::VectorXd, std::less<>>;

@@ -25,6 +25,16 @@ Eigen::VectorXd spread_m(const MotionDatabase& database, const WeightedPaths& we
   return spread;
 }
 
+Eigen::VectorXd specific_force_mps2(std::span<const Signal> signals,
+                                    const Eigen::RowVectorXf& measured) {
+  std::vector<double> values;
+  for (std::size_t s = 0; s < signals.size(); ++s)
+    if (signals[s].channel == Channel::specific_force)
+      for (Eigen::Index axis = 0; axis < 3; ++axis)
+        values.push_back(static_cast<double>(measured[static_cast<Eigen::Index>(3 * s) + axis]));
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
 Eigen::VectorXd sensor_misfit_mps2(const WeightedPaths& weighted, std::span<const Signal> signals,
                                    const FeatureRows& signal_rows,
                                    const Eigen::RowVectorXf& measured) {
@@ -48,6 +58,7 @@ Diagnostics retrieval_diagnostics(const MotionDatabase& database, const Weighted
   const int frame = weighted.paths.front().frame;
   Diagnostics out;
   out["sensor_misfit_mps2"] = sensor_misfit_mps2(weighted, signals, signal_rows, measured);
+  out["specific_force_mps2"] = specific_force_mps2(signals, measured);
   out["spread_m"] = spread_m(database, weighted);
   out["clip"] = Eigen::VectorXd::Constant(1, database.clip_index(frame));
   out["database_frame"] = Eigen::VectorXd::Constant(1, frame);
