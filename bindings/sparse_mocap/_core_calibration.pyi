@@ -6,6 +6,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
+from ._core_model import Model
 from ._core_motion import Skeleton
 from ._core_types import Floats
 
@@ -83,4 +84,31 @@ def calibrate_sensor(
 
     Raises ConfigError for an unknown site, pose or movement, for a height or position out of range,
     and for a performer who does not stand still long enough.
+    """
+
+def calibration_poses() -> list[tuple[str, str, Floats]]:
+    """Returns the poses of a calibration: name, instruction, rotations (21, 4) of the joints.
+
+    Rotations of the standard skeleton's joints, w x y z, relative to the parent; facing +z.
+    """
+
+def calibrate_from_poses(
+    sites: Sequence[str],
+    poses: Sequence[tuple[str, ArrayLike, ArrayLike]],
+    model: Model | None = None,
+) -> dict[str, Any]:
+    """Returns bones and mountings from held poses (Liu et al. 2011, section 4).
+
+    poses: the name of each, where the S trackers were while it was held, (S, 3) m, and their
+    rotations R_world_sensor (S, 3, 3), NaN where a tracker says nothing. model: bone lengths that
+    liu2011 was trained on; None: published proportions.
+
+    ``bones`` (21, 3) m, ``bone_deviation_m`` and ``is_bone_determined`` (20,) of all bones but the
+    root's; ``sensors``: a dict each with R_site_sensor (3, 3), offset_m (3,) in the site's axes,
+    their deviations and whether the poses determine them; ``missed_deg``: how far the limbs with
+    sensors were from each shown pose, RMS; ``imitation_deg``: the deviation of each angle from
+    them; ``yaw_rad`` of the performer's front in the trackers' world; ``are_poses_alike``.
+
+    Raises ConfigError for an unknown site or pose, without sensors or poses, and when no tracker
+    says anything in a pose; FormatError for a model without bone lengths.
     """

@@ -24,13 +24,15 @@ class SensorInput:
         scale: float = 1.0,
         R_site_sensor: ArrayLike | None = None,
         gyroscope_bias: ArrayLike | None = None,
+        offset_m: ArrayLike | None = None,
     ) -> None:
         """Takes a site of site_names() and channels of CHANNEL_NAMES.
 
         position_along_bone is 0 at the joint near the body and 1 at the bone's far end. Specific
         forces times scale are m/s^2; R_site_sensor (3, 3) is applied after the scale;
-        gyroscope_bias (3,) is in rad/s and the sensor's own axes. Raises ConfigError for an unknown
-        site or channel.
+        gyroscope_bias (3,) is in rad/s and the sensor's own axes; offset_m (3,) is where the sensor
+        sits, seen from its site, in the site's axes. Raises ConfigError for an unknown site or
+        channel.
         """
     @property
     def site(self) -> str:

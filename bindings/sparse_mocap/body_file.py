@@ -29,7 +29,14 @@ from .mappings import to_standard
 from .motion_files import read_motion
 from .table_errors import TableError, read_lines
 
-__all__ = ["BodyFileError", "body_of_motion", "read_body", "write_body"]
+__all__ = [
+    "BodyFileError",
+    "body_of_motion",
+    "body_with_bones",
+    "bones_by_name",
+    "read_body",
+    "write_body",
+]
 
 FilePath = str | os.PathLike[str]
 
@@ -43,13 +50,12 @@ class BodyFileError(TableError):
 
 def write_body(path: FilePath, body: Body, source: str = "") -> None:
     """Writes a body file atomically; source says where the bones come from. Raises OSError."""
-    bones = dict(zip(standard_joint_names(), body.bones.tolist(), strict=True))
     whole = {
         "format": _FORMAT,
         "format_version": _VERSION,
         "performer": body.performer,
         "source": source,
-        "bones_m": bones,
+        "bones_m": bones_by_name(body),
     }
     text = json.dumps(whole, indent=2, ensure_ascii=False)
     write_text(path, text + "\n")
@@ -68,9 +74,19 @@ def read_body(path: FilePath) -> Body:
     for key in ("performer", "source"):
         if not isinstance(whole.get(key, ""), str):
             raise BodyFileError(path, 0, f"{key} must be a text")
-    bones = _bones(path, whole.get("bones_m"))
+    return body_with_bones(path, whole.get("bones_m"), whole.get("performer", ""))
+
+
+def bones_by_name(body: Body) -> dict[str, list[float]]:
+    """Returns a body's bones as files have them."""
+    return dict(zip(standard_joint_names(), body.bones.tolist(), strict=True))
+
+
+def body_with_bones(path: FilePath, bones_m: Any, performer: str = "") -> Body:
+    """Returns the body whose bones a file has. Raises BodyFileError, naming the key."""
+    bones = _bones(path, bones_m)
     try:
-        return Body(bones, whole.get("performer", ""))
+        return Body(bones, performer)
     except ConfigError as error:
         raise BodyFileError(path, 0, f"{error}; bones_m must be in metres") from None
 

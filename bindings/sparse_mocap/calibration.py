@@ -9,13 +9,14 @@ are strapped on anew.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._core import (
+    Body,
     ConfigError,
     SensorInput,
     Skeleton,
@@ -42,6 +43,7 @@ __all__ = [
     "positions_along_bone",
     "sensor_inputs",
     "standing_pose_names",
+    "worn_at",
 ]
 
 _CLEARLY = 2.0  # how much more the shaken sensor must move than any other
@@ -81,6 +83,8 @@ class SensorCalibration:
     """What could not be determined, why, and what was taken instead."""
     device: str = ""
     """The identity of the device that was calibrated; empty: not known."""
+    offset_m: Floats = field(default_factory=lambda: np.zeros(3))
+    """(3,) where it sits, seen from its site, in the site's axes; for trackers of position."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +92,8 @@ class Calibration:
     """The calibrations of a take's sensors, by the names that the take gives them."""
 
     sensors: dict[str, SensorCalibration]
+    body: Body | None = None
+    """The performer's, where the calibration found it; used by methods that know one."""
 
     @property
     def quality(self) -> float:
@@ -128,7 +134,7 @@ def calibrate(
     they win over what the movements show. Raises CalibrationError naming the sensor, what it
     read and what to do; ConfigError for names that are not known.
     """
-    worn = _worn_at(take, sites or {})
+    worn = worn_at(take, sites or {})
     devices = devices_of(take)
     found = {}
     for name, record in take.sensors.items():
@@ -216,7 +222,8 @@ def assign_by_shaking(take: Take, span: Span) -> str:
     return first
 
 
-def _worn_at(take: Take, sites: Mapping[str, str]) -> dict[str, str]:
+def worn_at(take: Take, sites: Mapping[str, str]) -> dict[str, str]:
+    """Returns where each of the take's sensors is worn, by its name. Raises CalibrationError."""
     for name in sites:
         if name not in take.sensors:
             known = ", ".join(take.sensors)
@@ -277,6 +284,7 @@ def _sensor_input(
         scale=known.scale,
         R_site_sensor=known.R_site_sensor,
         gyroscope_bias=known.gyroscope_bias,
+        offset_m=known.offset_m,
     )
 
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from . import site_names
+from .body_file import body_with_bones, bones_by_name
 from .calibration import Calibration, SensorCalibration
 from .files import write_text
 from .json_keys import unique_keys
@@ -23,14 +24,18 @@ __all__ = ["CalibrationFileError", "read_calibration", "write_calibration"]
 Path = str | os.PathLike[str]
 
 _FORMAT = "sparse_mocap_calibration"
-_VERSION = 2
+_VERSION = 3
 _OLD_NAMES = {
     "place": "position_along_bone",
     "is_place_determined": "is_position_determined",
     "place_deviation": "position_deviation",
 }
 """Of version 1, which stated none."""
-_SHAPES: dict[str, tuple[int, ...]] = {"R_site_sensor": (3, 3), "gyroscope_bias": (3,)}
+_SHAPES: dict[str, tuple[int, ...]] = {
+    "R_site_sensor": (3, 3),
+    "gyroscope_bias": (3,),
+    "offset_m": (3,),
+}
 _NEEDED = ("site", "scale", "R_site_sensor", "position_along_bone")
 _DEFAULTS: dict[str, Any] = {
     "gyroscope_bias": [0.0, 0.0, 0.0],
@@ -43,7 +48,9 @@ _DEFAULTS: dict[str, Any] = {
     "position_deviation": 1.0,
     "notes": [],
     "device": "",
+    "offset_m": [0.0, 0.0, 0.0],
 }
+"""Version 2 has no offset_m, and no bones_m beside the sensors."""
 _LIMITS = {"scale": (0.01, 100.0), "position_along_bone": (0.0, 1.0)}
 
 
@@ -54,7 +61,9 @@ class CalibrationFileError(TableError):
 def write_calibration(path: Path, calibration: Calibration) -> None:
     """Writes a calibration file atomically."""
     sensors = {name: _plain(sensor) for name, sensor in calibration.sensors.items()}
-    whole = {"format": _FORMAT, "format_version": _VERSION, "sensors": sensors}
+    whole: dict[str, Any] = {"format": _FORMAT, "format_version": _VERSION, "sensors": sensors}
+    if calibration.body is not None:
+        whole["bones_m"] = bones_by_name(calibration.body)
     write_text(path, json.dumps(whole, indent=2, ensure_ascii=False) + "\n")
 
 
@@ -75,7 +84,7 @@ def read_calibration(path: Path) -> Calibration:
         raise CalibrationFileError(
             path, 0, f'is not a calibration file; it must be an object with "format": "{_FORMAT}"'
         )
-    _check_keys(path, "", whole, ("format", "format_version", "sensors"), ("sensors",))
+    _check_keys(path, "", whole, ("format", "format_version", "sensors", "bones_m"), ("sensors",))
     version = whole.get("format_version", 1)
     if isinstance(version, bool) or version not in range(1, _VERSION + 1):
         raise CalibrationFileError(
@@ -86,7 +95,9 @@ def read_calibration(path: Path) -> Calibration:
     if not isinstance(sensors, dict) or not sensors:
         raise CalibrationFileError(path, 0, "'sensors' must be an object with a sensor or more")
     names = _OLD_NAMES if version == 1 else {}
-    return Calibration({name: _sensor(path, name, value, names) for name, value in sensors.items()})
+    found = {name: _sensor(path, name, value, names) for name, value in sensors.items()}
+    body = body_with_bones(path, whole["bones_m"]) if "bones_m" in whole else None
+    return Calibration(found, body)
 
 
 def _plain(sensor: SensorCalibration) -> dict[str, Any]:

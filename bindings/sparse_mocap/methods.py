@@ -91,6 +91,7 @@ class MethodInfo:
     most_sensors: int
     works_live: bool
     works_on_whole_takes: bool
+    can_be_trained: bool
     experiments: tuple[Experiment, ...]
 
     def can_use(self, channels: Collection[str]) -> bool:
@@ -163,6 +164,7 @@ def _method(told: dict[str, Any]) -> MethodInfo:
         most_sensors=told["sensors"]["most"],
         works_live=told["works_live"],
         works_on_whole_takes=told["works_on_whole_takes"],
+        can_be_trained=told["can_be_trained"],
         experiments=tuple(
             Experiment(
                 experiment["name"],

@@ -54,9 +54,10 @@ def reconstruct(
     live. method, preset and options are those that ``methods()`` lists; None is the default.
     calibration says how the take's sensors are worn, without one they sit as their names say, at
     the ends of their bones; positions_along_bone (by site, 0 to 1) win over it. model and body are
-    for methods that need one. Clips in excluded_clips (indices) are treated as if the database did
-    not have them. tracker_* say where the world of orientations and positions stands: yaw about
-    the vertical (rad) and origin (m). progress(done, total, what) cancels by returning False.
+    for methods that need one; a body wins over the calibration's. Clips in excluded_clips
+    (indices) are treated as if the database did not have them. tracker_* say where
+    the world of orientations and positions stands: yaw about the vertical (rad) and origin (m).
+    progress(done, total, what) cancels by returning False.
 
     Raises ConfigError in one line for what does not fit together, CalibrationError for a sensor
     without a calibration, and Cancelled.
@@ -67,7 +68,7 @@ def reconstruct(
         preset=preset,
         options=options,
         model=model,
-        body=body,
+        body=_body(body, calibration),
         excluded_clips=excluded_clips,
         tracker_yaw_rad=tracker_yaw_rad,
         tracker_origin_m=tracker_origin_m,
@@ -166,6 +167,12 @@ class LiveReconstructor:
     def num_skipped(self) -> int:
         """Readings that came faster than poses could be made of them."""
         return self._live.num_skipped
+
+
+def _body(body: Skeleton | None, calibration: Calibration | None) -> Skeleton | None:
+    if body is not None or calibration is None or calibration.body is None:
+        return body
+    return calibration.body.skeleton
 
 
 def with_locations(take: Take, calibration: Calibration | None) -> Take:

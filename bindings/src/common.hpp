@@ -21,6 +21,7 @@ void bind_retargeting(py::module_& m);
 void bind_sensors(py::module_& m);
 void bind_streams(py::module_& m);
 void bind_calibration(py::module_& m);
+void bind_pose_calibration(py::module_& m);
 void bind_timing(py::module_& m);
 void bind_rotations(py::module_& m);
 void bind_readings(py::module_& m);

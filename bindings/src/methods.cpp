@@ -95,6 +95,7 @@ py::dict method_dict(const MethodEntry& method) {
   out["sensors"] = sensors;
   out["works_live"] = method.make_live != nullptr;
   out["works_on_whole_takes"] = method.make_whole_take != nullptr;
+  out["can_be_trained"] = method.train != nullptr;
   out["experiments"] = list_of(info.experiments, experiment_dict);
   return out;
 }

@@ -22,6 +22,7 @@ the call by returning False (the call then raises Cancelled and leaves nothing b
   python::bind_rotations(m);
   python::bind_readings(m);
   python::bind_model(m);
+  python::bind_pose_calibration(m);
   python::bind_database(m);
   python::bind_database_import(m);
   python::bind_reconstruction(m);

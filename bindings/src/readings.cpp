@@ -19,8 +19,8 @@ GravityAverage average_from(const std::string& name) {
 
 SensorInput input_from(const std::string& site, const std::vector<std::string>& channels,
                        double position_along_bone, double scale,
-                       const OptionalDoubles& R_site_sensor,
-                       const OptionalDoubles& gyroscope_bias) {
+                       const OptionalDoubles& R_site_sensor, const OptionalDoubles& gyroscope_bias,
+                       const OptionalDoubles& offset_m) {
   SensorInput input;
   input.sensor = {find_site(site), position_along_bone, channels_from(channels)};
   input.correction.scale = scale;
@@ -31,6 +31,10 @@ SensorInput input_from(const std::string& site, const std::vector<std::string>& 
   if (gyroscope_bias) {
     require_shape(*gyroscope_bias, {3}, "gyroscope_bias");
     input.correction.gyroscope_bias = Vec3(gyroscope_bias->data());
+  }
+  if (offset_m) {
+    require_shape(*offset_m, {3}, "offset_m");
+    input.correction.offset_m = Vec3(offset_m->data());
   }
   return input;
 }
@@ -115,12 +119,14 @@ void bind_sensor_input(py::module_& m) {
            py::arg("channels") = std::vector<std::string>{"specific_force"}, py::kw_only(),
            py::arg("position_along_bone") = 1.0, py::arg("scale") = 1.0,
            py::arg("R_site_sensor") = py::none(), py::arg("gyroscope_bias") = py::none(),
+           py::arg("offset_m") = py::none(),
            R"doc(Takes a site of site_names() and channels of CHANNEL_NAMES.
 
 position_along_bone is 0 at the joint near the body and 1 at the bone's far end. Specific
 forces times scale are m/s^2; R_site_sensor (3, 3) is applied after the scale;
-gyroscope_bias (3,) is in rad/s and the sensor's own axes. Raises ConfigError for an unknown
-site or channel.)doc")
+gyroscope_bias (3,) is in rad/s and the sensor's own axes; offset_m (3,) is where the sensor
+sits, seen from its site, in the site's axes. Raises ConfigError for an unknown site or
+channel.)doc")
       .def_property_readonly(
           "site",
           [](const SensorInput& input) {

@@ -91,4 +91,31 @@ SENTENCES = {
     ),
     "Next: squats, five times on the spot": "Als Nächstes: Kniebeugen, fünfmal auf der Stelle",
     "Squat, five times, heels on the ground": "Kniebeuge, fünfmal, Fersen am Boden",
+    "Arms out to the sides, stand upright, palms down": (
+        "Arme zur Seite, aufrecht stehen, Handflächen nach unten"
+    ),
+    "Arms forward, stand upright, palms down": (
+        "Arme nach vorn, aufrecht stehen, Handflächen nach unten"
+    ),
+    "Arms straight up, stand upright, palms outward": (
+        "Arme senkrecht nach oben, aufrecht stehen, Handflächen nach außen"
+    ),
+    "Elbows bent, upper arms at the sides, forearms level and forward": (
+        "Ellenbogen gebeugt, Oberarme am Körper, Unterarme waagerecht nach vorn"
+    ),
+    "Bow by 45 degrees, back and knees straight, arms along the body": (
+        "Um 45 Grad verbeugen, Rücken und Knie gerade, Arme am Körper"
+    ),
+    "Left knee up, thigh level, right arm forward, left arm out": (
+        "Linkes Knie hoch, Oberschenkel waagerecht, rechter Arm nach vorn, linker zur Seite"
+    ),
+    "Right knee up, thigh level, left arm forward, right arm out": (
+        "Rechtes Knie hoch, Oberschenkel waagerecht, linker Arm nach vorn, rechter zur Seite"
+    ),
+    "Lean to the left, at the waist, arms stretched out from the chest": (
+        "Nach links neigen, in der Taille, Arme seitlich vom Brustkorb weg"
+    ),
+    "Get ready": "Bereit machen",
+    "Hold still": "Stillhalten",
+    "The last pose was {degrees} degrees off": "Die letzte Pose war {degrees} Grad daneben",
 }

@@ -298,6 +298,11 @@ TOOLTIPS = {
         "Herausfinden, wie jeder Sensor am Körper sitzt. Die Ansicht zeigt dem Darsteller, was zu "
         "tun ist: stillstehen, Ellenbogen beugen, Kniebeugen"
     ),
+    "Find how trackers that tell their orientation sit on the body. The viewport shows the "
+    "performer eight poses to imitate, one after the other; face the same way in all": (
+        "Herausfinden, wie Tracker mit Orientierung am Körper sitzen. Die Ansicht zeigt dem "
+        "Darsteller nacheinander acht Posen zum Nachmachen; dabei immer in dieselbe Richtung sehen"
+    ),
     "Calibration of the sensors (.json), made with Calibrate. Empty: the sensors are "
     "worn in the default orientation (see README)": (
         "Kalibrierung der Sensoren (.json), mit Kalibrieren gemacht. Leer: die Sensoren werden so "

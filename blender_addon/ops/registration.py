@@ -7,7 +7,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..scene import live as live_scene
-from ..scene import overlay, prompt, sensor_graph
+from ..scene import overlay, pose_guide, prompt, sensor_graph
 from ..scene.report import facts
 from ..scene.user_folder import user_folder
 from ..session import job, log_file
@@ -22,6 +22,7 @@ from ..session.take import takes
 from . import (
     bake,
     calibrate,
+    calibrate_poses,
     character,
     clips,
     copy_report,
@@ -49,6 +50,7 @@ CLASSES = (
     *live.CLASSES,
     *sensor_table.CLASSES,
     *calibrate.CLASSES,
+    *calibrate_poses.CLASSES,
     *character.CLASSES,
     *bake.CLASSES,
     *record.CLASSES,
@@ -62,6 +64,7 @@ def _before_load(*_: object) -> None:
     job.cancel_current()
     live_scene.stop_ticking()
     prompt.hide()
+    pose_guide.hide()
     overlay.hide()
     sensor_graph.hide()
     live_session.end()
@@ -107,6 +110,7 @@ def unregister() -> None:
     record.remove_shortcut()
     live_scene.stop_ticking()
     prompt.hide()
+    pose_guide.hide()
     overlay.hide()
     sensor_graph.hide()
     _end_all()

@@ -13,7 +13,7 @@ from ..session.calibrating import CALIBRATING
 from .translations import tr
 
 _FONT = 0
-_LARGEST_PX = 64.0
+LARGEST_PX = 64.0
 _COLOUR = (1.0, 0.75, 0.2, 1.0)
 _SHADOW = (0.0, 0.0, 0.0, 0.9)
 
@@ -48,22 +48,22 @@ def hide() -> None:
 
 def _draw() -> None:
     if _countdown > 0:
-        left, width, height = _free_view()
-        _line(tr("Recording starts in"), 0.5 * _LARGEST_PX, left, width, 0.62 * height)
-        _line(str(_countdown), 2.5 * _LARGEST_PX, left, width, 0.62 * height - 3.0 * _LARGEST_PX)
+        left, width, height = free_view()
+        line(tr("Recording starts in"), 0.5 * LARGEST_PX, left, width, 0.62 * height)
+        line(str(_countdown), 2.5 * LARGEST_PX, left, width, 0.62 * height - 3.0 * LARGEST_PX)
         return
     job = jobs.current()
     if job is None or job.label != CALIBRATING or job.is_cancelled:
         return
     what, _, seconds = job.what.rpartition(": ")
     headline, _, hint = tr(what).partition(", ")
-    left, width, height = _free_view()
-    _line(headline, _LARGEST_PX, left, width, 0.62 * height)
-    _line(hint, 0.5 * _LARGEST_PX, left, width, 0.62 * height - 0.9 * _LARGEST_PX)
-    _line(seconds, 1.5 * _LARGEST_PX, left, width, 0.62 * height - 2.8 * _LARGEST_PX)
+    left, width, height = free_view()
+    line(headline, LARGEST_PX, left, width, 0.62 * height)
+    line(hint, 0.5 * LARGEST_PX, left, width, 0.62 * height - 0.9 * LARGEST_PX)
+    line(seconds, 1.5 * LARGEST_PX, left, width, 0.62 * height - 2.8 * LARGEST_PX)
 
 
-def _free_view() -> tuple[float, float, float]:
+def free_view() -> tuple[float, float, float]:
     """Left edge, width and height of the viewport without sidebar and toolbar, px."""
     whole, left, right = bpy.context.region, 0.0, 0.0
     if bpy.context.preferences.system.use_region_overlap:
@@ -75,7 +75,7 @@ def _free_view() -> tuple[float, float, float]:
     return left, max(whole.width - left - right, 1.0), whole.height
 
 
-def _line(text: str, size: float, left: float, width: float, y: float) -> None:
+def line(text: str, size: float, left: float, width: float, y: float) -> None:
     """Draw the text centred, smaller if it would not fit."""
     blf.size(_FONT, size)
     length = blf.dimensions(_FONT, text)[0]

@@ -21,6 +21,7 @@ MODULES = (
     "sparse_mocap.databases",
     "sparse_mocap.mappings",
     "sparse_mocap.methods",
+    "sparse_mocap.pose_calibration",
     "sparse_mocap.readings",
     "sparse_mocap.reconstruction",
     "sparse_mocap.quality",

@@ -13,6 +13,7 @@ from ..scene.translations import tr
 from ..session import live
 from ..session.calibrating import CALIBRATING, calibrations
 from ..session.names import shown_site
+from ..session.pose_guide import CALIBRATING_BY_POSES
 from . import text
 from .step import StepPanel, action_button, redraw_soon, tick
 
@@ -51,6 +52,11 @@ class SPARSEMOCAP_PT_calibration(StepPanel, Panel):
             layout, "sparse_mocap.calibrate_sensors", "ORIENTATION_GIMBAL", CALIBRATING,
             is_ready=is_ready,
         )  # fmt: skip
+        if any(sensor["has_orientation"] for sensor in session.state.sensors):
+            action_button(
+                layout, "sparse_mocap.calibrate_by_poses", "OUTLINER_OB_ARMATURE",
+                CALIBRATING_BY_POSES, is_ready=is_ready,
+            )  # fmt: skip
 
 
 def _contents(layout: UILayout, context: Context, path: str) -> None:

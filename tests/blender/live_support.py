@@ -22,11 +22,14 @@ DRIVER, OPTIONS = "xsens_mt", "output=mtdata"
 
 
 @contextmanager
-def emulated(take: Any, **faults: Any) -> Iterator[str]:
-    """The port at which the take is played from the moment somebody opens it."""
+def emulated(take: Any, options: dict[str, str] | None = None, **faults: Any) -> Iterator[str]:
+    """The port at which the take is played from the moment somebody opens it.
+
+    options: the driver's; None: {"output": "mtdata"}, accelerometers without a device's clock.
+    """
     from sparse_mocap.capture import Emulator, Faults
 
-    emulator = Emulator(take, DRIVER, {"output": "mtdata"}, faults=Faults(**faults))
+    emulator = Emulator(take, DRIVER, options or {"output": "mtdata"}, faults=Faults(**faults))
     stop = threading.Event()
     [port] = emulator.plug_in()
     thread = threading.Thread(target=lambda: emulator.run(stop.is_set))

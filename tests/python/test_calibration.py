@@ -303,7 +303,7 @@ def test_a_file_of_the_first_format_is_read(tmp_path: Path) -> None:
     assert read.position_deviation == 0.5
     write_calibration(path, read_calibration(path))
     again = json.loads(path.read_text(encoding="utf-8"))
-    assert again["format_version"] == 2
+    assert again["format_version"] == 3
     assert again["sensors"]["a"]["position_along_bone"] == 0.25
     assert "place" not in again["sensors"]["a"]
 
@@ -349,8 +349,8 @@ def test_a_broken_file_is_refused_by_key(tmp_path: Path, change: dict, told: str
         ('{"format": "sparse_mocap_calibration"}', "sensors is missing"),
         ('{"format": "sparse_mocap_calibration", "sensors": {}}', "a sensor or more"),
         (
-            '{"format": "sparse_mocap_calibration", "format_version": 3, "sensors": {}}',
-            "format_version is 3; this version of Sparse Mocap reads 1 to 2",
+            '{"format": "sparse_mocap_calibration", "format_version": 4, "sensors": {}}',
+            "format_version is 4; this version of Sparse Mocap reads 1 to 3",
         ),
         ('{"format": 1, "format": 2}', "repeats the key 'format'"),
     ],

@@ -19,6 +19,7 @@ _COMMANDS = {
     "batch": ".batch:batch",
     "body": ".body:body",
     "calibrate": ".calibrate:calibrate_command",
+    "calibrate-poses": ".calibrate_poses:calibrate_poses",
     "convert": ".convert:convert",
     "database": ".database:database",
     "drivers": ".drivers:drivers",

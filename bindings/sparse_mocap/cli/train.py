@@ -53,7 +53,7 @@ def train(
     """
     check_ending(output, ".smmodel")
     choice = method_choice(method, preset, settings)
-    if "model" not in choice.info.needs:
+    if not choice.info.can_be_trained:
         raise ConfigError(
             f"{choice.method} needs no trained model: give it a motion database (--database)"
         )

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/liu2011/method.hpp"
 
+#include <algorithm>
+#include <string>
+
+#include "sparse_mocap/liu2011/bone_lengths.hpp"
 #include "sparse_mocap/liu2011/config.hpp"
 #include "sparse_mocap/liu2011/reconstructor.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
@@ -53,6 +57,24 @@ std::vector<Experiment> experiments() {
           {"combinations", "Combinations of sensor data (section 7)", combinations(), {}, kAngles}};
 }
 
+// What calibrations learn from: the bone lengths of people, one body a skeleton.
+Model trained(const MethodSettings&, const std::vector<TrainingClip>& clips, const Progress&) {
+  std::vector<MeasuredBody> bodies;
+  std::vector<StandardBones> seen;
+  for (const TrainingClip& clip : clips) {
+    const StandardBones bones = bones_of(clip.motion.skeleton);
+    const auto is_same = [&](const StandardBones& other) {
+      return lengths_of(other).isApprox(lengths_of(bones), 1e-6);
+    };
+    if (std::any_of(seen.begin(), seen.end(), is_same)) continue;
+    seen.push_back(bones);
+    bodies.push_back(measured_body(bones));
+  }
+  Model model = to_model(learnt_bone_lengths(bodies));
+  model.metadata["num_bodies"] = std::to_string(bodies.size());
+  return model;
+}
+
 }  // namespace
 
 MethodEntry method() {
@@ -74,6 +96,7 @@ MethodEntry method() {
                        const MethodContext& context) -> std::unique_ptr<LiveMethod> {
     return std::make_unique<Reconstructor>(config_of(settings), context);
   };
+  entry.train = &trained;
   return entry;
 }
 

@@ -18,7 +18,10 @@ SensorSample SensorCorrection::operator()(const SensorSample& sample) const {
   SensorSample out = sample;
   out.specific_force = R_site_sensor * (scale * sample.specific_force);
   out.angular_velocity = R_site_sensor * (sample.angular_velocity - gyroscope_bias);
-  out.orientation = wxyz_of(quaternion_of(sample.orientation) * Quat(R_site_sensor).conjugate());
+  const Quat R_world_site = quaternion_of(sample.orientation) * Quat(R_site_sensor).conjugate();
+  out.orientation = wxyz_of(R_world_site);
+  if (!offset_m.isZero() && sample.orientation.allFinite())
+    out.position = sample.position - R_world_site * offset_m;
   return out;
 }
 

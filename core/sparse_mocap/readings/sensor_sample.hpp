@@ -29,6 +29,9 @@ struct SensorCorrection {
   double scale = 1.0;                     // specific forces times this are m/s^2
   Mat3 R_site_sensor = Mat3::Identity();  // applied after the scale
   Vec3 gyroscope_bias = Vec3::Zero();     // rad/s, sensor axes
+  // m, site axes: where it sits, seen from its site. Positions move to the site where the
+  // orientation is known.
+  Vec3 offset_m = Vec3::Zero();
 
   SensorSample operator()(const SensorSample& sample) const;
 };

@@ -20,6 +20,7 @@ from blender_addon.session import (
     demo,
     imported,
     mapping,
+    pose_guide,
     reconstruct,
     sensors,
 )
@@ -30,7 +31,11 @@ ADDON = Path(__file__).resolve().parents[3] / "blender_addon"
 LANGUAGES = {"german": german.TEXTS}
 
 SHOWN = [*sorted((ADDON / "ui").glob("*.py")), ADDON / "scene/prompt.py"]
-SHOWN += [ADDON / "scene/sensor_graph.py", ADDON / "ops/sensor_table.py"]
+SHOWN += [
+    ADDON / "scene/pose_guide.py",
+    ADDON / "scene/sensor_graph.py",
+    ADDON / "ops/sensor_table.py",
+]
 DEFINED = [*sorted((ADDON / "ops").glob("*.py")), ADDON / "scene/settings.py"]
 DEFINED += [ADDON / f"scene/{name}.py" for name in ("preferences", "clips", "mapping")]
 
@@ -102,6 +107,9 @@ def known_texts() -> list[str]:
         *jobs,
         calibrating.CALIBRATING,
         *(phase.text for phase in calibrating.PHASES),
+        pose_guide.CALIBRATING_BY_POSES,
+        *pose_guide.POSE_TEXTS.values(),
+        *(pose_guide.READY, pose_guide.HOLD, pose_guide.MISSED),
         *mapping.LABELS.values(),
         *(shown_site(site) for site in sparse_mocap.site_names()),
         *(found.terms for found in FREE_MOTIONS),

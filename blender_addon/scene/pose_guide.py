@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pose that the performer imitates, drawn in the viewports, with what to do and a countdown."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+from mathutils import Vector
+
+from ..session import job as jobs
+from ..session import pose_guide
+from ..session.pose_guide import CALIBRATING_BY_POSES
+from . import drawing
+from .prompt import LARGEST_PX, free_view, line
+from .translations import tr
+
+_READY = (0.35, 0.65, 1.0, 1.0)
+_HELD = (0.3, 0.9, 0.4, 1.0)
+_WIDTH_PX = 6.0
+_JOINT_PX = 9.0
+_SHARE = 0.5
+"""Of the viewport's height that the figures take."""
+
+_handler: Any = None
+
+
+def show() -> None:
+    """Show the poses while such a calibration is running."""
+    global _handler
+    if _handler is None:
+        _handler = bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_PIXEL")
+
+
+def hide() -> None:
+    """Remove the poses from the viewports."""
+    global _handler
+    if _handler is not None:
+        bpy.types.SpaceView3D.draw_handler_remove(_handler, "WINDOW")
+        _handler = None
+
+
+def _draw() -> None:
+    job, now = jobs.current(), pose_guide.shown
+    if job is None or job.label != CALIBRATING_BY_POSES or job.is_cancelled or not now.pose:
+        return
+    left, width, height = free_view()
+    _figures(now.pose, _HELD if now.is_held else _READY, left, width, height)
+    headline, _, hint = tr(pose_guide.POSE_TEXTS[now.pose]).partition(", ")
+    line(headline, LARGEST_PX, left, width, 0.32 * height)
+    line(hint, 0.5 * LARGEST_PX, left, width, 0.32 * height - 0.9 * LARGEST_PX)
+    what = tr(pose_guide.HOLD if now.is_held else pose_guide.READY)
+    line(f"{what}: {now.seconds:.0f}", LARGEST_PX, left, width, 0.32 * height - 2.2 * LARGEST_PX)
+    more = now.problem
+    if now.missed_deg is not None:
+        more = tr(pose_guide.MISSED).format(degrees=round(now.missed_deg))
+    if more:
+        line(more, 0.5 * LARGEST_PX, left, width, 0.32 * height - 3.1 * LARGEST_PX)
+
+
+def _figures(pose: str, colour: drawing.Colour, left: float, width: float, height: float) -> None:
+    """The pose as in a mirror, and beside it as seen from its left."""
+    points, parents = pose_guide.points_of(pose)
+    lowest = float(points[:, 1].min())
+    scale = min(_SHARE * height / 2.1, 0.4 * width / 2.1)  # px a metre; arms reach up or out
+    for place, sideways in ((0.3, points[:, 0]), (0.7, points[:, 2])):
+        across = left + place * width
+        drawn = [
+            Vector((across + scale * float(x), 0.4 * height + scale * (float(y) - lowest), 0.0))
+            for x, y in zip(sideways, points[:, 1], strict=True)
+        ]
+        ends = [
+            drawn[k] for joint, parent in enumerate(parents) if parent >= 0 for k in (parent, joint)
+        ]
+        drawing.lines(ends, colour, _WIDTH_PX)
+        drawing.points(drawn, colour, _JOINT_PX)

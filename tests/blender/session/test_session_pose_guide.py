@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("sparse_mocap._core")
+pytest.importorskip("serial")
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import sparse_mocap
+import sparse_mocap.pose_calibration
+from live_support import emulated, own_runtime, until
+from sparse_mocap.calibration_file import read_calibration
+
+from blender_addon.session import live, pose_guide, sensors
+from blender_addon.session.errors import InputError
+from blender_addon.session.job import Cancelled
+
+ROOT = Path(__file__).resolve().parents[3]
+SITES = ("left_hand", "right_hand", "left_ankle", "right_ankle", "head", "torso")
+LEAD_S, READY_S, HOLD_S = 3.0, 2.0, 1.0
+TIMES = pose_guide.Times(READY_S, HOLD_S)
+
+
+@pytest.fixture(scope="module")
+def performance(tmp_path_factory):
+    """A take of the held poses, and how its trackers are turned."""
+    folder = tmp_path_factory.mktemp("held")
+    maker = ROOT / "tests" / "python" / "held_poses.py"
+    # Each pose is taken long before the guide records it.
+    command = [sys.executable, maker, folder / "take.csv", folder / "planted.npz"]
+    subprocess.run([*command, str(LEAD_S + 0.6), "0.6", str(READY_S + HOLD_S - 0.6)], check=True)
+    return sparse_mocap.read_take(folder / "take.csv"), np.load(folder / "planted.npz")["turns"]
+
+
+@pytest.fixture
+def session(performance, tmp_path):
+    folder = tmp_path / "runtime"
+    folder.mkdir(mode=0o700)
+    options = {"output": "mtdata2"}
+    with own_runtime(folder), emulated(performance[0], options) as port:
+        chosen = sensors.Port(port, "xsens_mt", options="output=mtdata2", sites=", ".join(SITES))
+        live.begin(sensors.new_session(chosen, tmp_path / "takes"))
+        session = live.current()
+        until(lambda: session.state.error or len(session.state.sensors) == len(SITES))
+        yield session
+        live.end()
+
+
+def angle_deg(R):
+    return np.degrees(np.arccos(np.clip((np.trace(R) - 1) / 2, -1, 1)))
+
+
+def test_the_guide_finds_how_trackers_sit(performance, session, tmp_path):
+    until(lambda: session.state.sensors[0]["samples"] >= 100 * LEAD_S)
+    shown = []
+    job = pose_guide.pose_guide_job(session, tmp_path / "takes", TIMES)
+    result = job.run(lambda: shown.append((job.fraction, job.what, pose_guide.shown)))
+    for site, R_site_sensor in zip(SITES, performance[1], strict=True):
+        off = angle_deg(result.calibration.sensors[site].R_site_sensor @ R_site_sensor.T)
+        assert off < 10.0, site
+    assert set(read_calibration(result.path).sensors) == set(SITES)
+    assert any("not measured" in note for note in result.notes)
+    poses = [name for name, _, _ in sparse_mocap.pose_calibration.calibration_poses()]
+    assert list(dict.fromkeys(now.pose for _, _, now in shown)) == poses
+    assert {what for _, what, _ in shown} == {pose_guide.POSE_TEXTS[pose] for pose in poses}
+    fractions = [fraction for fraction, _, _ in shown]
+    assert fractions == sorted(fractions)
+    told = [now.missed_deg for _, _, now in shown if now.pose == "lean_left" and not now.is_held]
+    assert told
+    assert all(0.0 <= missed < 20.0 for missed in told)
+    assert pose_guide.shown.pose == ""
+    until(lambda: session.state.recording is None)
+
+
+def test_cancelling_ends_the_recording_and_leaves_no_file(session, tmp_path):
+    job = pose_guide.pose_guide_job(session, tmp_path / "takes", TIMES)
+    threading.Timer(1.6, job.cancel).start()
+    with pytest.raises(Cancelled):
+        job.run()
+    until(lambda: session.state.recording is None)
+    assert list((tmp_path / "takes").glob("*.json")) == []
+
+
+def test_not_while_something_is_recorded(session, tmp_path):
+    live.answer_of(session.record(), 5.0)
+    until(lambda: session.state.recording is not None)
+    with pytest.raises(InputError, match="stop it"):
+        pose_guide.pose_guide_job(session, tmp_path)
+
+
+def test_every_pose_has_its_text_and_its_points():
+    poses = [name for name, _, _ in sparse_mocap.pose_calibration.calibration_poses()]
+    assert list(pose_guide.POSE_TEXTS) == poses
+    points, parents = pose_guide.points_of("arms_up")
+    names = list(sparse_mocap.standard_joint_names())
+    assert points.shape == (21, 3)
+    assert len(parents) == 21
+    assert points[names.index("lwrist"), 1] > points[names.index("head"), 1]
