@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,16 +87,7 @@ def calibrate_by_poses(
         raise CalibrationError("no pose was held: say when, at least for one")
     worn = worn_at(take, sites or {})
     names = list(take.sensors)
-    told = [
-        name
-        for name, record in take.sensors.items()
-        if record.orientation is None and record.position is None
-    ]
-    if told:
-        raise CalibrationError(
-            f"{', '.join(told)}: gives neither orientation nor position; calibrate such sensors by "
-            "movements (`calibrate`)"
-        )
+    _require_trackers(take)
     held = [[_held(name, pose, span, take.sensors[name]) for name in names] for pose, span in poses]
     found = calibrate_from_poses(
         [worn[name] for name in names],
@@ -110,21 +102,36 @@ def calibrate_by_poses(
     for j, name in enumerate(names):
         own = [row[j] for row in held]
         sensors[name] = _sensor(worn[name], devices.get(name, ""), found["sensors"][j], own)
-    body = Body(found["bones"], performer)
+    calibration = Calibration(sensors, Body(found["bones"], performer))
+    return _told(calibration, [pose for pose, _ in poses], found)
+
+
+def _told(calibration: Calibration, poses: list[str], found: dict[str, Any]) -> PoseCalibration:
     bones = list(standard_joint_names())[1:]
     unknown = [
         b for b, is_known in zip(bones, found["is_bone_determined"], strict=True) if not is_known
     ]
-    deviations = dict(zip(bones, found["bone_deviation_m"].tolist(), strict=True))
-    missed = zip((pose for pose, _ in poses), found["missed_deg"], strict=True)
     return PoseCalibration(
-        Calibration(sensors, body),
-        deviations,
+        calibration,
+        dict(zip(bones, found["bone_deviation_m"].tolist(), strict=True)),
         tuple(unknown),
-        tuple(missed),
+        tuple(zip(poses, found["missed_deg"], strict=True)),
         found["imitation_deg"],
-        tuple(_notes(found["are_poses_alike"], unknown, Calibration(sensors))),
+        tuple(_notes(found["are_poses_alike"], unknown, calibration)),
     )
+
+
+def _require_trackers(take: Take) -> None:
+    others = [
+        name
+        for name, record in take.sensors.items()
+        if record.orientation is None and record.position is None
+    ]
+    if others:
+        raise CalibrationError(
+            f"{', '.join(others)}: gives neither orientation nor position; calibrate such sensors "
+            "by movements (`calibrate`)"
+        )
 
 
 def _held(name: str, pose: str, span: Span, record: SensorRecord) -> _Held:
@@ -192,15 +199,13 @@ def _mean_rotation(name: str, pose: str, values: Floats | None, rows: slice) -> 
     )
 
 
-def _sensor(
-    site: str, device: str, found: dict[str, object], held: list[_Held]
-) -> SensorCalibration:
+def _sensor(site: str, device: str, found: dict[str, Any], held: list[_Held]) -> SensorCalibration:
     gravity = _median([float(np.linalg.norm(one.force)) for one in held])
     is_true = abs(gravity / GRAVITY_MPS2 - 1.0) < _TRUE_WITHIN
     turns = np.array([one.turn for one in held])
     bias = np.median(turns, axis=0) if np.isfinite(turns).all() else np.zeros(3)
     deviation = np.asarray(found["offset_deviation_m"])
-    mounting_deg = float(np.asarray(found["mounting_deviation_deg"]))
+    mounting_deg = float(found["mounting_deviation_deg"])
     is_offset_determined = bool(found["is_offset_determined"])
     notes = []
     if not found["is_mounting_determined"]:
@@ -241,7 +246,9 @@ def _notes(are_alike: bool, unknown: list[str], calibration: Calibration) -> lis
             "the poses are too alike to tell bones and trackers apart: hold others as well, such "
             "as arms_forward, bow and left_knee_up"
         )
-    if unknown:
+    if len(unknown) == len(standard_joint_names()) - 1:
+        notes.append("no bone was measured: lengths are those usual for people")
+    elif unknown:
         notes.append(
             f"not measured, and taken as usual for such a body: the length of {', '.join(unknown)}"
         )

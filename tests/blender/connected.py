@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -14,11 +14,17 @@ from support import SITES, Skipped, addon, library, settings
 
 
 @contextmanager
-def connected(tmp_path: Path, take_path: Path | None = None) -> Iterator[object]:
+def connected(
+    tmp_path: Path,
+    take_path: Path | None = None,
+    *,
+    sites: Sequence[str] = SITES,
+    options: str = OPTIONS,
+) -> Iterator[object]:
     """A session with an emulator that plays a take, beside a saved file.
 
     Without a take the library's, again and again: a busy machine may show the first pose only after
-    its length.
+    its length. sites: of its sensors; options: the driver's.
     """
     if os.name == "nt":
         raise Skipped("there are no pseudo-terminals")
@@ -31,15 +37,20 @@ def connected(tmp_path: Path, take_path: Path | None = None) -> Iterator[object]
     else:
         take = sparse_mocap.read_take(take_path)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
-    with own_runtime(tmp_path / "runtime"), emulated(take) as port:
+    with own_runtime(tmp_path / "runtime"), emulated(take, as_dict(options)) as port:
         chosen = settings()
-        chosen.port, chosen.driver, chosen.driver_options = port, DRIVER, OPTIONS
-        chosen.sites, chosen.database = ", ".join(SITES), str(library().database)
+        chosen.port, chosen.driver, chosen.driver_options = port, DRIVER, options
+        chosen.sites, chosen.database = ", ".join(sites), str(library().database)
         assert bpy.ops.sparse_mocap.connect_sensors() == {"FINISHED"}
         session = addon("session.live").current()
-        until(lambda: session.state.error or len(session.state.sensors) == len(SITES))
+        until(lambda: session.state.error or len(session.state.sensors) == len(sites))
         assert session.state.error == ""
         try:
             yield session
         finally:
             session.close()
+
+
+def as_dict(options: str) -> dict[str, str]:
+    """Options of a driver as the emulator takes them."""
+    return dict(part.split("=") for part in options.split(", "))

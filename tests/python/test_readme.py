@@ -13,6 +13,7 @@ from pathlib import Path
 
 import click
 import guided_body
+import held_poses
 import pytest
 import sparse_mocap
 from readme_blocks import README, Block, blocks
@@ -74,6 +75,8 @@ def test_the_commands_work_in_their_order(
     for block in blocks():
         if any("calibrate" in words for words in block.commands):
             record_guided_movements(block, tmp_path)
+        if any("calibrate-poses" in words for words in block.commands):
+            record_held_poses(tmp_path)
         if block.language == "python" and "import bpy" not in block.text:
             run_python(block.text, tmp_path)
         for words in block.commands:
@@ -88,6 +91,12 @@ def record_guided_movements(block: Block, folder: Path) -> None:
     words = next(words for words in block.commands if "calibrate" in words)
     arms, legs = (words[words.index(option) + 1].split(":") for option in ("--arms", "--legs"))
     guided_body.main(folder / "take.csv", folder / "planted.npy", arms[0], legs[0], legs[1])
+
+
+def record_held_poses(folder: Path) -> None:
+    """The take of somebody who held each pose when the block says, and another one."""
+    for name in ("poses.csv", "trackers.csv"):
+        sparse_mocap.write_take(folder / name, held_poses.recorded(3.0, 2.0, 5.0))
 
 
 def run_python(text: str, folder: Path) -> None:

@@ -64,7 +64,7 @@ def test_the_guide_finds_how_trackers_sit(performance, session, tmp_path):
         off = angle_deg(result.calibration.sensors[site].R_site_sensor @ R_site_sensor.T)
         assert off < 10.0, site
     assert set(read_calibration(result.path).sensors) == set(SITES)
-    assert any("not measured" in note for note in result.notes)
+    assert any("no bone was measured" in note for note in result.notes)
     poses = [name for name, _, _ in sparse_mocap.pose_calibration.calibration_poses()]
     assert list(dict.fromkeys(now.pose for _, _, now in shown)) == poses
     assert {what for _, what, _ in shown} == {pose_guide.POSE_TEXTS[pose] for pose in poses}
