@@ -160,6 +160,9 @@ class LiveReconstructor:
     def last_reading_s(self) -> float:
         """When the last reading was that any sensor was in, in s; -inf before there is one."""
     @property
+    def notes(self) -> list[str]:
+        """What the method says of the performance so far, a line each."""
+    @property
     def num_skipped(self) -> int:
         """How many readings were skipped because they came faster than poses could be computed."""
 
@@ -173,11 +176,23 @@ class TrainingClip:
         *,
         motion_class: str = "",
         readings: Readings | None = None,
+        segments: Sequence[tuple[float, str]] = (),
     ) -> None:
         """Takes a motion on a standard skeleton, feet and hands or not; an empty class is unknown.
 
-        readings were recorded with the motion, at its rate; None: they are simulated.
+        readings were recorded with the motion, at its rate; None: they are simulated. segments are
+        times (s) and labels as clip_segments() returns them; none: the method finds them.
         """
+    motion_class: str
+    """Empty: unknown."""
+    segments: list[tuple[float, str]]
+    """As clip_segments() returns them."""
+    @property
+    def name(self) -> str:
+        """Of messages."""
+    @property
+    def motion(self) -> Motion:
+        """On a standard skeleton."""
 
 def train(
     method: str,
@@ -190,6 +205,18 @@ def train(
     """Returns the model that a method learns from clips.
 
     Raises ConfigError for a method that learns nothing and for what it cannot use, and Cancelled.
+    """
+
+def clip_segments(
+    method: str,
+    clip: TrainingClip,
+    *,
+    preset: str = "",
+    options: Mapping[str, str] = {},
+) -> list[tuple[float, str]]:
+    """Returns the parts that training divides a clip into: when each begins (s), its label.
+
+    Raises ConfigError for a method that divides none, and for a clip that it cannot use.
     """
 
 def playback_best_path(

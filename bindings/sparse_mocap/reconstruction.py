@@ -164,6 +164,11 @@ class LiveReconstructor:
         return self._live.last_reading_s
 
     @property
+    def notes(self) -> list[str]:
+        """What the method says of the performance so far, a line each."""
+        return list(self._live.notes)
+
+    @property
     def num_skipped(self) -> int:
         """Readings that came faster than poses could be made of them."""
         return self._live.num_skipped

@@ -118,9 +118,24 @@ ReconstructionRequest request_from(const std::string& method, const std::string&
   return request;
 }
 
+using Segments = std::vector<std::pair<double, std::string>>;
+
+Segments segments_in(const TrainingClip& clip) {
+  Segments segments;
+  for (const auto& segment : clip.segments) segments.emplace_back(segment.begin_s, segment.label);
+  return segments;
+}
+
+void set_segments(TrainingClip& clip, const Segments& segments) {
+  clip.segments.clear();
+  for (const auto& [begin_s, label] : segments) clip.segments.push_back({begin_s, label});
+}
+
 TrainingClip clip_from(const std::string& name, const Motion& motion,
-                       const std::string& motion_class, const std::optional<Readings>& readings) {
+                       const std::string& motion_class, const std::optional<Readings>& readings,
+                       const Segments& segments) {
   TrainingClip clip{name, motion_class, motion, {}, {}};
+  set_segments(clip, segments);
   if (readings) {
     clip.sensors = readings->sensors;
     clip.readings = readings->readings;
@@ -136,6 +151,15 @@ std::shared_ptr<Model> train(const std::string& method, const std::vector<Traini
   const py::gil_scoped_release release;
   const MethodSettings settings{preset, {options.begin(), options.end()}};
   return std::make_shared<Model>(train_model(find_method(method), settings, clips, progress));
+}
+
+Segments segments(const std::string& method, const TrainingClip& clip, const std::string& preset,
+                  const std::map<std::string, std::string>& options) {
+  const MethodSettings settings{preset, {options.begin(), options.end()}};
+  Segments found;
+  for (const auto& segment : segments_of_clip(find_method(method), settings, clip))
+    found.emplace_back(segment.begin_s, segment.label);
+  return found;
 }
 
 }  // namespace
@@ -163,14 +187,26 @@ ReadingStream. Raises ValueError unless tracker_origin_m has three numbers.)doc"
       .def(
           py::init(&clip_from), py::arg("name"), py::arg("motion"), py::kw_only(),
           py::arg("motion_class") = "", py::arg("readings") = py::none(),
+          py::arg("segments") = Segments{},
           R"doc(Takes a motion on a standard skeleton, feet and hands or not; an empty class is unknown.
 
-readings were recorded with the motion, at its rate; None: they are simulated.)doc");
+readings were recorded with the motion, at its rate; None: they are simulated. segments are
+times (s) and labels as clip_segments() returns them; none: the method finds them.)doc")
+      .def_readonly("name", &TrainingClip::name, "Of messages.")
+      .def_readwrite("motion_class", &TrainingClip::motion_class, "Empty: unknown.")
+      .def_property("segments", &segments_in, &set_segments, "As clip_segments() returns them.")
+      .def_readonly("motion", &TrainingClip::motion, "On a standard skeleton.");
   m.def("train", &train, py::arg("method"), py::arg("clips"), py::kw_only(), py::arg("preset") = "",
         py::arg("options") = std::map<std::string, std::string>{}, py::arg("progress") = py::none(),
         R"doc(Returns the model that a method learns from clips.
 
 Raises ConfigError for a method that learns nothing and for what it cannot use, and Cancelled.)doc");
+  m.def("clip_segments", &segments, py::arg("method"), py::arg("clip"), py::kw_only(),
+        py::arg("preset") = "", py::arg("options") = std::map<std::string, std::string>{},
+        py::call_guard<py::gil_scoped_release>(),
+        R"doc(Returns the parts that training divides a clip into: when each begins (s), its label.
+
+Raises ConfigError for a method that divides none, and for a clip that it cannot use.)doc");
 }
 
 }  // namespace sparse_mocap::python

@@ -193,6 +193,9 @@ cannot use.)doc")
           "last_reading_s", [](BoundLive& b) { return b.live().last_reading_s(); },
           "When the last reading was that any sensor was in, in s; -inf before there is one.")
       .def_property_readonly(
+          "notes", [](BoundLive& b) { return b.live().notes(); },
+          "What the method says of the performance so far, a line each.")
+      .def_property_readonly(
           "num_skipped", [](BoundLive& b) { return b.live().num_skipped(); },
           "How many readings were skipped because they came faster than poses could be computed.");
 }

@@ -21,7 +21,6 @@ from ..scene.takes import add_take
 from ..scene.targets import chosen_armatures, own_figure, placement_of
 from ..session import live, sensors
 from ..session.core import core
-from ..session.database import Database
 from ..session.errors import InputError
 from ..session.job import Job
 from ..session.live import LiveSession, answer_of, one_line_of
@@ -148,20 +147,21 @@ class SPARSEMOCAP_OT_go_live(JobOperator, Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def prepare(self, context: Context) -> Job:
-        """Open the scene's database."""
+        """Open the scene's database and model."""
         connected()
         settings = settings_of(context.scene)
         return sensors.live_preview_job(
-            bpy.path.abspath(settings.database), bpy.path.abspath(settings.calibration)
+            bpy.path.abspath(settings.database),
+            bpy.path.abspath(settings.calibration),
+            scene_choice(context.scene),
         )
 
-    def apply(self, context: Context, result: tuple[Database, Any]) -> Steps[str]:
+    def apply(self, context: Context, result: sensors.LivePreview) -> Steps[str]:
         """Choose or create the armature and start the preview."""
         yield 0.0
         session = connected()
-        database, calibration = result
-        armature = live_scene.follow(context, core().with_extremities(database.motions.skeleton))
-        session.go_live(database, scene_choice(context.scene), calibration)
+        armature = live_scene.follow(context, result.skeleton)
+        session.go_live(result.database, scene_choice(context.scene), result.calibration)
         return f'Live preview on "{armature.name}"'
 
 

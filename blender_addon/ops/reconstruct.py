@@ -57,7 +57,8 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
         self.fill_from_scene(
             context, "offline", "start_frame", "reuse_armature", "whole_frames", "extend_scene"
         )
-        choice, renamed = choice_of(self.method, self.preset, self.options)
+        model = bpy.path.abspath(settings.training.model)
+        choice, renamed = choice_of(self.method, self.preset, self.options, model)
         if renamed:
             self.report({"WARNING"}, renamed)
         armatures = chosen_armatures(context)
@@ -85,6 +86,8 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
                 {"WARNING"},
                 "The motion database has nothing like this take, so the motion is a guess",
             )
+        for note in performance.notes:
+            self.report({"INFO"}, note[:1].upper() + note[1:])
         for target in result.placement.targets:
             if target.held:
                 self.report({"WARNING"}, held_warning(target))

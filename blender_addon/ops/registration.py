@@ -7,7 +7,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..scene import live as live_scene
-from ..scene import overlay, pose_guide, prompt, sensor_graph
+from ..scene import latent_view, overlay, pose_guide, prompt, sensor_graph
 from ..scene.report import facts
 from ..scene.user_folder import user_folder
 from ..session import job, log_file
@@ -17,6 +17,7 @@ from ..session.core import core
 from ..session.database import databases
 from ..session.errors import log
 from ..session.imported import file_summaries
+from ..session.methods import models
 from ..session.port_scanner import port_scanner
 from ..session.take import takes
 from . import (
@@ -35,6 +36,7 @@ from . import (
     record,
     sensor_table,
     take,
+    training,
     try_it,
 )
 
@@ -55,6 +57,7 @@ CLASSES = (
     *bake.CLASSES,
     *record.CLASSES,
     *try_it.CLASSES,
+    *training.CLASSES,
 )
 
 
@@ -67,6 +70,7 @@ def _before_load(*_: object) -> None:
     pose_guide.hide()
     overlay.hide()
     sensor_graph.hide()
+    latent_view.hide()
     live_session.end()
 
 
@@ -88,6 +92,7 @@ def _end_all() -> None:
     databases.close()
     takes.close()
     calibrations.close()
+    models.close()
     file_summaries.close()
 
 
@@ -113,6 +118,7 @@ def unregister() -> None:
     pose_guide.hide()
     overlay.hide()
     sensor_graph.hide()
+    latent_view.hide()
     _end_all()
     atexit.unregister(_end_all)
     bpy.app.handlers.save_post.remove(_after_save)

@@ -52,6 +52,8 @@ class _Followed:
     stage: Stage = field(default_factory=Stage)
     spread_m: Floats = field(default_factory=lambda: np.empty(0))
     """(J,) of the pose that is shown."""
+    latent: tuple[int, Floats] | None = None
+    """Its type of motion and its place in the latent space of that."""
 
 
 _followed: _Followed | None = None
@@ -103,6 +105,11 @@ def spread_m(armature: Object) -> Floats | None:
     if _followed is None or _followed.armature != armature.name:
         return None
     return _followed.spread_m
+
+
+def latent_now() -> tuple[int, Floats] | None:
+    """The live pose's type of motion and its place in the latent space; None where there is none."""
+    return _followed.latent if _followed is not None else None
 
 
 def target_of(armature: Object) -> Target | None:
@@ -177,6 +184,7 @@ def tick() -> Pose | None:
     if pose is None:
         return None
     _followed.spread_m = pose.spread_m
+    _followed.latent = (pose.motion_type, pose.latent) if len(pose.latent) else None
     in_place = settings_of(bpy.context.scene).in_place
     shown = _followed.stage.shown(pose, in_place=in_place)
     if _followed.rig is not None:

@@ -22,6 +22,7 @@ from ..session.methods import (
     written_options,
 )
 from .preferences import PERSONAL, delegating, own_property
+from .training import SPARSEMOCAP_PG_training
 
 _kept_items: dict[str, Items] = {}
 """Blender does not keep the texts of menus that are made on the fly; this does."""
@@ -277,6 +278,7 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
         name="In place", description="Keep the live character at the origin while it moves"
     )
     more_ports: CollectionProperty(type=SPARSEMOCAP_PG_port)
+    training: PointerProperty(type=SPARSEMOCAP_PG_training)
 
 
 SPARSEMOCAP_PG_settings.__annotations__ |= {name: delegating(name) for name in PERSONAL}
@@ -295,7 +297,8 @@ def options_text(settings: SPARSEMOCAP_PG_settings) -> str:
 def scene_choice(scene: Scene) -> MethodChoice:
     """The method that the scene's settings name. Raises InputError."""
     settings = settings_of(scene)
-    return choice_of(settings.method, settings.preset, options_text(settings))[0]
+    model = bpy.path.abspath(settings.training.model)
+    return choice_of(settings.method, settings.preset, options_text(settings), model)[0]
 
 
 def register() -> None:
@@ -304,6 +307,7 @@ def register() -> None:
     bpy.utils.register_class(SPARSEMOCAP_PG_port)
     bpy.utils.register_class(SPARSEMOCAP_PG_option)
     bpy.utils.register_class(SPARSEMOCAP_PG_take)
+    bpy.utils.register_class(SPARSEMOCAP_PG_training)
     bpy.utils.register_class(SPARSEMOCAP_PG_settings)
     Scene.sparse_mocap = PointerProperty(type=SPARSEMOCAP_PG_settings)
 
@@ -312,6 +316,7 @@ def unregister() -> None:
     """Unregister the settings."""
     del Scene.sparse_mocap
     bpy.utils.unregister_class(SPARSEMOCAP_PG_settings)
+    bpy.utils.unregister_class(SPARSEMOCAP_PG_training)
     bpy.utils.unregister_class(SPARSEMOCAP_PG_take)
     bpy.utils.unregister_class(SPARSEMOCAP_PG_option)
     bpy.utils.unregister_class(SPARSEMOCAP_PG_port)

@@ -27,6 +27,7 @@ MODULES = (
     "sparse_mocap.quality",
     "sparse_mocap.report",
     "sparse_mocap.take",
+    "sparse_mocap.training",
 )
 CAPTURE_MODULES = (
     "sparse_mocap.capture.client",
@@ -87,6 +88,24 @@ def capture() -> ModuleType:
         raise InputError(
             f"Real sensors need the Python package {error.name}: install it in Blender's Python"
         ) from error
+
+
+def training_module() -> ModuleType:
+    """The package's part that chooses what models are trained from."""
+    core()
+    return _imported_all(("sparse_mocap.training",))
+
+
+def latent_space_module() -> ModuleType:
+    """The package's part that lays out what a model has learned."""
+    core()
+    return _imported_all(("sparse_mocap.latent_space",))
+
+
+def imports_module() -> ModuleType:
+    """The package's part that reads recordings of other programs."""
+    core()
+    return _imported_all(("sparse_mocap.imports",))
 
 
 def demo_motions() -> ModuleType:

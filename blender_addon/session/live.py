@@ -42,7 +42,7 @@ class LiveState:
     sensors: tuple[dict[str, Any], ...] = ()
     """From the capture's status: identity, name, site, rate_hz, state, missing, battery."""
     notes: tuple[str, ...] = ()
-    """What is wrong with where the sensors are worn; one line each."""
+    """What is wrong with where the sensors are worn, and what the method says; one line each."""
     shaking: str = ""
     """The site for which the sensor that is shaken is being looked for."""
     no_readings: str = ""
@@ -67,8 +67,9 @@ class LiveSession:
         self._state = LiveState()
         self._pose: Pose | None = None
         self._is_pose_new = False
-        self._wanted: tuple[Database, MethodChoice, Any] | None = None
-        self._active: tuple[Database, MethodChoice, Any] | None = None
+        self._wanted: tuple[Database | None, MethodChoice, Any] | None = None
+        self._active: tuple[Database | None, MethodChoice, Any] | None = None
+        self._refused: tuple[Database | None, MethodChoice, Any] | None = None
         self._poses: LivePoses | None = None
         self._begun_s = 0.0
         self._shaking: tuple[str, Any] | None = None
@@ -98,8 +99,11 @@ class LiveSession:
             self._thread.join(STOP_WITHIN_S)
         return not self._thread.is_alive()
 
-    def go_live(self, database: Database, choice: MethodChoice, calibration: Any = None) -> None:
-        """Start the live preview. calibration: as for LivePoses."""
+    def go_live(self, database: Database | None, choice: MethodChoice, calibration: Any = None) -> None:
+        """Start the live preview. calibration: as for LivePoses.
+
+        database: None for methods that need none.
+        """
         self._wanted = (database, choice, calibration)
 
     def use_calibration(self, calibration: Any) -> None:
@@ -214,14 +218,15 @@ class LiveSession:
         wanted = self._wanted
         if not is_settled or wanted is not self._active:
             self._poses = None
-        if wanted is not None and self._poses is None and sites and is_settled:
-            self._active = wanted
+        is_refused = wanted is self._refused and is_settled
+        if wanted is not None and self._poses is None and sites and is_settled and not is_refused:
+            self._active, self._refused = wanted, None
             self._begin_poses(*wanted)
         self._update(
             is_connected=True,
             links=tuple(status["links"]),
             sensors=tuple(s for s in status["sensors"] if not s["is_replaced"]),
-            notes=tuple(status["notes"]),
+            notes=(*status["notes"], *(self._poses.notes if self._poses else ())),
             shaking=self._shaking[0] if self._shaking else "",
             no_readings=self._why_no_readings(status),
             recording=status["recording"],
@@ -229,10 +234,12 @@ class LiveSession:
             quality=self._poses.quality() if self._poses else Quality(),
         )
 
-    def _begin_poses(self, database: Database, choice: MethodChoice, calibration: Any) -> None:
+    def _begin_poses(
+        self, database: Database | None, choice: MethodChoice, calibration: Any
+    ) -> None:
         try:
             self._poses = LivePoses(
-                database.motions,
+                None if database is None else database.motions,
                 self._sites,
                 self._channels,
                 choice,
@@ -275,7 +282,12 @@ class LiveSession:
     def _advance(self, samples: Any) -> None:
         if self._poses is None:
             return
-        pose = self._poses.advance(samples)
+        try:
+            pose = self._poses.advance(samples)
+        except core().ConfigError as error:  # shown until something is chosen anew
+            self._poses, self._refused = None, self._active
+            self._update(warning=one_line_of(error))
+            return
         if pose is None:
             return
         with self._lock:

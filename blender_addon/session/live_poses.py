@@ -33,6 +33,10 @@ class Pose:
     """(J,) how far the retrieved poses deviate; (0,) where the method tells nothing."""
     contacts: tuple[float, ...] = ()
     """How certain it is that the left and the right foot stand."""
+    latent: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
+    """(D,) where it is in the latent space of its type of motion; (0,) where there is none."""
+    motion_type: int = 0
+    """Number of that type."""
 
 
 @dataclass(frozen=True)
@@ -99,6 +103,11 @@ class LivePoses:
         """When the last reading was that any sensor was in, on the machine's monotonic clock."""
         return float(self._reconstructor.last_reading_s)
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the method says of the performance so far, a line each."""
+        return tuple(self._reconstructor.notes)
+
     def quality(self) -> Quality:
         """How the last poses came out."""
         num_skipped = self._reconstructor.num_skipped
@@ -125,4 +134,6 @@ class LivePoses:
             estimate.time_s,
             np.array(estimate.diagnostics.get("spread_m", ())),
             tuple(float(contact) for contact in estimate.contacts),
+            np.array(estimate.diagnostics.get("latent", ())),
+            int(estimate.diagnostics.get("motion_type", (0,))[0]),
         )

@@ -8,6 +8,7 @@ from typing import Any
 
 from .core import core, missing_reason
 from .errors import InputError
+from .file_cache import FileCache
 
 Items = list[tuple[str, str, str]]
 """Identifiers, labels and descriptions."""
@@ -20,23 +21,37 @@ class MethodChoice:
     method: str = ""
     preset: str = ""
     options: tuple[tuple[str, str], ...] = ()
+    model: str = ""
+    """The file of the trained model, for methods that need one."""
 
     def arguments(self) -> dict[str, Any]:
-        """The arguments of the core's reconstruct() and LiveReconstructor."""
-        return {
+        """The arguments of the core's reconstruct() and LiveReconstructor.
+
+        Raises InputError for a method that needs a model without one, and what is wrong with it.
+        """
+        found = {
             "method": self.method or None,
             "preset": self.preset or None,
             "options": dict(self.options),
         }
+        if needs_model(self.method):
+            found["model"] = models.get(self.model)
+        return found
 
 
-def choice_of(method: str, preset: str, options: str) -> tuple[MethodChoice, str]:
+models: FileCache[Any] = FileCache("trained model", lambda path: core().read_model(path))
+
+
+def choice_of(
+    method: str, preset: str, options: str, model: str = ""
+) -> tuple[MethodChoice, str]:
     """The choice, and a warning if a name has changed; options: "KEY=VALUE, KEY=VALUE".
 
     Raises InputError for text that is not of that form.
     """
     new_method, new_preset, renamed = core().methods.renamed_preset(method or None, preset or None)
-    return MethodChoice(new_method or "", new_preset or "", parsed_options(options)), renamed
+    parsed = parsed_options(options)
+    return MethodChoice(new_method or "", new_preset or "", parsed, model), renamed
 
 
 def parsed_options(text: str) -> tuple[tuple[str, str], ...]:
@@ -95,6 +110,32 @@ def has_best_quality(method: str) -> bool:
     if not method:
         return bool(known_methods) and bool(known_methods[0].works_on_whole_takes)
     return any(known.works_on_whole_takes for known in known_methods if known.name == method)
+
+
+def needs_model(method: str) -> bool:
+    """Whether the method (empty: the default) needs a trained model."""
+    return "model" in _needs(method)
+
+
+def needs_database(method: str) -> bool:
+    """Whether the method (empty: the default) needs a motion database."""
+    return "database" in _needs(method)
+
+
+def missing_file(method: str, database: str, model: str) -> str:
+    """What has to be chosen before the method can be used; empty when all is there."""
+    if needs_database(method) and not database:
+        return "Choose a motion database first"
+    if needs_model(method) and not model:
+        return "Train or open a model first"
+    return ""
+
+
+def _needs(method: str) -> tuple[str, ...]:
+    known = _methods()
+    if not method:
+        return tuple(known[0].needs) if known else ("database",)
+    return next((tuple(one.needs) for one in known if one.name == method), ("database",))
 
 
 def _methods() -> tuple[Any, ...]:

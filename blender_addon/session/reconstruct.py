@@ -15,7 +15,7 @@ from .certainty import SensorCurves, sensor_curves, spread_of
 from .core import core
 from .database import Database, databases
 from .job import Job, Progress
-from .methods import MethodChoice
+from .methods import MethodChoice, needs_database
 from .take import LoadedTake, takes
 
 RECONSTRUCTING = "Reconstructing"
@@ -39,6 +39,12 @@ class Performance:
     """(T, J) how far the retrieved poses deviate; (T, 0) where the method tells nothing."""
     curves: SensorCurves | None = None
     """What the sensors measured and should read."""
+    latent: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)))
+    """(T, D) places in the latent space; (T, 0) where the method has none."""
+    motion_types: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    """(T,) numbers of the types of motion that those belong to."""
+    notes: tuple[str, ...] = ()
+    """What the method says of the take, a line each."""
 
     def frame_at(self, time_s: float) -> int | None:
         """The pose at a time; None outside the take."""
@@ -92,7 +98,7 @@ def reconstruct_job(
     wrong with the files.
     """
     core()
-    database = databases.get(database_path)
+    database = databases.get(database_path) if needs_database(choice.method) else None
     take = takes.get(take_path)
     calibration = calibration_at(calibration_path)
 
@@ -111,7 +117,7 @@ def reconstruct_job(
 
 
 def reconstruct(
-    database: Database,
+    database: Database | None,
     take: LoadedTake,
     *,
     calibration: Any = None,
@@ -119,25 +125,31 @@ def reconstruct(
     best_quality: bool,
     progress: Progress,
 ) -> Performance:
-    """The motion of the take. Raises what the core reports."""
+    """The motion of the take; no database for methods that need none. Raises what the core says."""
     sparse_mocap = core()
+    motions = database.motions if database is not None else None
     solved = sparse_mocap.reconstruct(
         take.take,
-        database.motions,
+        motions,
         best_quality=best_quality,
         **choice.arguments(),
         calibration=calibration,
         progress=progress,
     )
     motion = solved.motion
-    quality = sparse_mocap.quality.quality_of(solved, database.motions)
+    quality = sparse_mocap.quality.quality_of(solved, motions)
     return Performance(
         name=take.name,
         motion=motion,
         contacts=np.asarray(solved.contacts),
         duration_s=(motion.num_frames - 1) * motion.frame_time_s,
-        match=sparse_mocap.report.match(solved, database.motions),
+        match=sparse_mocap.report.match(solved, motions),
         is_guess=quality is not None and quality.is_unlike_the_database,
         spread_m=spread_of(solved),
         curves=sensor_curves(solved),
+        latent=np.asarray(solved.diagnostics.get("latent", np.empty((motion.num_frames, 0)))),
+        motion_types=np.asarray(
+            solved.diagnostics.get("motion_type", np.zeros((motion.num_frames, 1)))
+        )[:, 0].astype(np.int64),
+        notes=tuple(solved.notes),
     )

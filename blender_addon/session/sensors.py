@@ -11,14 +11,15 @@ from typing import Any
 from .bake import PlacedTake, Placement, placed
 from .calibrating import calibration_at
 from .core import capture, core
-from .database import databases
+from .database import Database, databases
 from .errors import InputError, one_line
 from .job import Cancelled, Job, Progress
 from .live import ANSWER_WITHIN_S, LiveSession, answer_of, one_line_of
-from .methods import MethodChoice, has_best_quality
+from .methods import MethodChoice, has_best_quality, missing_file, needs_database
 from .new_files import free_path, stamp
 from .reconstruct import reconstruct
 from .take import takes
+from .training import skeleton_of
 
 STARTING_LIVE, SAVING_TAKE = "Starting the live preview", "Saving the take"
 LINGER_S = 2.0
@@ -92,11 +93,30 @@ def attach_session(session: Any) -> LiveSession:
     return LiveSession(lambda: module.CaptureClient(session), label)
 
 
-def live_preview_job(database_path: str, calibration_path: str) -> Job:
-    """The job that opens the database; its result is that, and the calibration if there is one."""
+@dataclass(frozen=True)
+class LivePreview:
+    """What a live preview needs."""
+
+    database: Database | None
+    """None for methods that need none."""
+    calibration: Any
+    skeleton: Any
+    """Of the poses, with feet, toes and hands."""
+
+
+def live_preview_job(database_path: str, calibration_path: str, choice: MethodChoice) -> Job:
+    """The job that opens the database and the model; its result is a LivePreview."""
     core()
     calibration = calibration_at(calibration_path)
-    return Job(STARTING_LIVE, lambda progress: (databases.get(database_path), calibration))
+
+    def work(progress: Progress) -> LivePreview:
+        if needs_database(choice.method):
+            database = databases.get(database_path)
+            skeleton = core().with_extremities(database.motions.skeleton)
+            return LivePreview(database, calibration, skeleton)
+        return LivePreview(None, calibration, skeleton_of(choice))
+
+    return Job(STARTING_LIVE, work)
 
 
 def save_take_job(
@@ -115,11 +135,12 @@ def save_take_job(
         path, warnings = _save(module, logs, number, folder)
         session.tell_saved(number)
         last_takes[:] = [path]
-        if not database_path:
-            return SavedTake(path, warnings, None, "choose a motion database first")
+        missing = missing_file(choice.method, database_path, choice.model)
+        if missing:
+            return SavedTake(path, warnings, None, missing[:1].lower() + missing[1:])
         try:
             performance = reconstruct(
-                databases.get(database_path),
+                databases.get(database_path) if needs_database(choice.method) else None,
                 takes.get(path),
                 calibration=calibration_at(calibration_path),
                 choice=choice,

@@ -13,6 +13,7 @@ from ..session import live, sensors
 from ..session.calibrating import CALIBRATING
 from ..session.core import missing_reason
 from ..session.live import LiveSession, LiveState
+from ..session.methods import missing_file
 from ..session.port_scanner import port_scanner
 from . import sensors as sensor_panels
 from . import text
@@ -110,10 +111,9 @@ def _character(layout: UILayout, context: Context) -> None:
 
 
 def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
-    reason = ""
-    if not settings_of(context.scene).database:
-        reason = "Choose a motion database first"
-    elif not session.state.sensors:
+    settings = settings_of(context.scene)
+    reason = missing_file(settings.method, settings.database, settings.training.model)
+    if not reason and not session.state.sensors:
         reason = "Waiting for data"
     if session.is_live_wanted:
         row = layout.row()

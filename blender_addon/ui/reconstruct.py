@@ -13,7 +13,7 @@ from ..scene.settings import SPARSEMOCAP_PG_settings, settings_of
 from ..scene.translations import tr
 from ..session.bake import PLACING_AGAIN
 from ..session.core import missing_reason
-from ..session.methods import has_best_quality, preset_items
+from ..session.methods import has_best_quality, missing_file, preset_items
 from ..session.reconstruct import RECONSTRUCTING, advice_for, kept
 from . import text
 from .step import StepPanel, action_button, job_is_running
@@ -51,14 +51,14 @@ class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
         column = layout.column(heading="Keys")
         column.prop(settings, "whole_frames")
         column.prop(settings, "extend_scene")
-        is_ready = bool(settings.database and settings.take)
+        missing = missing_file(settings.method, settings.database, settings.training.model)
+        if not missing and not settings.take:
+            missing = "Choose a take first"
         action_button(
-            layout, "sparse_mocap.reconstruct", "ARMATURE_DATA", RECONSTRUCTING, is_ready=is_ready
-        )
-        if not is_ready:
-            missing = "Choose a motion database first"
-            if settings.database:
-                missing = "Choose a take first"
+            layout, "sparse_mocap.reconstruct", "ARMATURE_DATA", RECONSTRUCTING,
+            is_ready=not missing,
+        )  # fmt: skip
+        if missing:
             text.paragraph(layout, context, missing, icon="INFO")
         _performed(layout, context)
 

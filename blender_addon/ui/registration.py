@@ -3,7 +3,18 @@
 
 import bpy
 
-from . import calibrate, clips, database, help, import_motion, live, mapping, reconstruct, take
+from . import (
+    calibrate,
+    clips,
+    database,
+    help,
+    import_motion,
+    live,
+    mapping,
+    reconstruct,
+    take,
+    training,
+)
 from .step import forget_timers
 
 CLASSES = (
@@ -11,6 +22,7 @@ CLASSES = (
     *clips.CLASSES,
     *take.CLASSES,
     *reconstruct.CLASSES,
+    *training.CLASSES,
     *live.CLASSES,
     *calibrate.CLASSES,
     *live.MESSAGES,

@@ -33,6 +33,7 @@ Config preset(const std::string& name) {
     throw ConfigError("unknown preset '" + name + "'; eom2014 has default, paper");
   config.mapping = Mapping::phases;
   config.window_frames = 0;
+  config.turns_by_gyroscope = false;
   return config;
 }
 
@@ -76,7 +77,11 @@ OptionTable<Config> all_options() {
                "how often the joints' rotations are smoothed")
       .flag("estimates_mounting", &Config::estimates_mounting,
             "whether the sensor may be turned on its limb; the movement tells how")
-      .flag("stops_skating", &Config::stops_skating, "whether standing feet stay in place");
+      .flag("stops_skating", &Config::stops_skating, "whether standing feet stay in place")
+      .flag("turns_by_gyroscope", &Config::turns_by_gyroscope,
+            "whether the body turns as the gyroscope does, rather than as in the clips")
+      .number("lag_ms", &Config::lag_ms, 0.0, 2000.0,
+              "live: how long a pose waits for further readings, ms");
   add_training(table);
   return table;
 }

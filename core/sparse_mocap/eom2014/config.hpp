@@ -40,6 +40,8 @@ struct Config {
   int smoothing_passes = 2;  // of the joints' rotations
   bool estimates_mounting = true;
   bool stops_skating = true;
+  bool turns_by_gyroscope = true;
+  double lag_ms = 300.0;  // of live poses
 };
 
 const std::vector<PresetInfo>& presets();

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "sparse_mocap/eom2014/readings.hpp"
+
 namespace sparse_mocap::eom2014 {
 namespace {
 
@@ -57,9 +59,7 @@ Eigen::MatrixXd frame_posterior(const Eigen::MatrixXd& features, const Eigen::Ma
                                 const std::vector<int>& begins, double width) {
   const Eigen::Index n = features.rows(), num_frames = training.rows();
   const auto ends = ends_of(begins, num_frames);
-  Eigen::MatrixXd distances = -2.0 * training * features.transpose();
-  distances.colwise() += training.rowwise().squaredNorm();
-  distances.rowwise() += features.rowwise().squaredNorm().transpose();
+  Eigen::MatrixXd distances = squared_distances(training, features);
   // Relative to the nearest frame, so that readings unlike all of them still have likeliest ones.
   distances.rowwise() -= distances.colwise().minCoeff().eval();
   const Eigen::MatrixXd emitted = (-0.5 / (width * width) * distances.array()).exp();

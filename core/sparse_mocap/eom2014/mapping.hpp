@@ -3,24 +3,32 @@
 
 #include <vector>
 
-#include "sparse_mocap/eom2014/trained_model.hpp"
+#include "sparse_mocap/eom2014/known_readings.hpp"
 
 namespace sparse_mocap::eom2014 {
 
-// How the root moves from the frame before, as the last velocity channels: left, forward (m/s),
-// turning (rad/s).
-using RootVelocity = Eigen::Vector3d;
+// Frames [begin, end) of a row of readings.
+struct FrameRange {
+  Eigen::Index begin = 0, end = 0;
 
-// What a mapping finds for each reading.
-struct MappedFrames {
-  Eigen::MatrixXd latent;  // frames x dimensions; no rows for mappings straight to poses
-  std::vector<Phase> phases;
-  Eigen::MatrixXd poses;             // frames x kNumPoseChannels
-  Eigen::MatrixX3d root_velocities;  // of the step to each frame; the first is not used
+  Eigen::Index size() const { return end - begin; }
 };
 
-// Readings, in the axes of the site, to poses (Eom et al. 2014, sections 5.5, 6.1 and 6.2).
-MappedFrames mapped(const TrainedModel& model, const SiteModel& site, const ReadingRows& readings,
-                    const Config& config);
+// What a mapping finds for each reading of a range.
+struct MappedFrames {
+  std::vector<int> types;  // the likeliest, index in the model's
+  std::vector<Phase> phases;
+  Eigen::MatrixXd latent;  // of that type, frames x dimensions; no rows for mappings to poses
+  Eigen::MatrixXd poses;   // frames x kNumPoseChannels
+  std::vector<ExtremityVote> extremities;  // what the training frames have
+  // How the root moves into each frame, as the last velocity channels: left, forward (m/s), turning
+  // (rad/s). That of the take's first frame is zero.
+  Eigen::MatrixX3d root_velocities;
+};
+
+// Readings, in the axes of the site, to poses (Eom et al. 2014, sections 5.5, 6.1 and 6.2). Where
+// several types of motion are likely, poses are between theirs.
+MappedFrames mapped(const TrainedModel& model, std::size_t site, const KnownReadings& known,
+                    const ReadingRows& readings, const Config& config, const FrameRange& range);
 
 }  // namespace sparse_mocap::eom2014

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sparse_mocap/eom2014/config.hpp"
+#include "sparse_mocap/eom2014/live.hpp"
 #include "sparse_mocap/eom2014/reconstructor.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 
@@ -62,6 +63,10 @@ Model train(const MethodSettings& settings, const std::vector<TrainingClip>& cli
   return stored(trained_model(config, clips, progress), config);
 }
 
+std::vector<Segment> segment(const MethodSettings& settings, const TrainingClip& clip) {
+  return found_phases(with_settings(settings), clip);
+}
+
 }  // namespace
 
 MethodEntry method() {
@@ -77,13 +82,19 @@ MethodEntry method() {
   entry.info.presets = presets();
   entry.info.options = options().described(Config());
   entry.info.required_channels = Channel::specific_force | Channel::angular_velocity;
+  entry.info.optional_channels = Channel::gravity_direction;
   entry.info.needs_model = true;
   entry.info.experiments = experiments();
+  entry.make_live = [](const MethodSettings& settings,
+                       const MethodContext& context) -> std::unique_ptr<LiveMethod> {
+    return std::make_unique<LiveReconstructor>(settings, context);
+  };
   entry.make_whole_take = [](const MethodSettings& settings,
                              const MethodContext& context) -> std::unique_ptr<WholeTakeMethod> {
     return std::make_unique<Reconstructor>(settings, context);
   };
   entry.train = train;
+  entry.segment = segment;
   return entry;
 }
 

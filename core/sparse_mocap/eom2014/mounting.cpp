@@ -8,50 +8,46 @@
 namespace sparse_mocap::eom2014 {
 namespace {
 
-constexpr Eigen::Index kMostCompared = 150;  // instants of a take
-constexpr int kWindow = 4;                   // of what is compared, to both sides
+constexpr int kMostCompared = 150;        // instants of a take
+constexpr Eigen::Index kMostKnown = 450;  // readings of a model
+constexpr int kWindow = 4;                // of what is compared, to both sides
 constexpr double kCoarseStep_rad = 10.0 * kRadiansPerDegree;
 constexpr double kFineStep_rad = 2.0 * kRadiansPerDegree;
 constexpr double kBetter = 0.9;        // misfit by a turn, as a part of that without
 constexpr double kOppositeSign = 0.7;  // by the opposite sign
 
-// Every so many rows, so that no more than kMostCompared are left.
-Eigen::MatrixXd thinned(const Eigen::MatrixXd& rows) {
-  const Eigen::Index by = std::max<Eigen::Index>(1, rows.rows() / kMostCompared);
+// Every so many rows, so that about so many are left.
+Eigen::MatrixXd thinned(const Eigen::MatrixXd& rows, Eigen::Index most) {
+  const Eigen::Index by = std::max<Eigen::Index>(1, rows.rows() / most);
   Eigen::MatrixXd out((rows.rows() + by - 1) / by, rows.cols());
   for (Eigen::Index i = 0; i < out.rows(); ++i) out.row(i) = rows.row(i * by);
   return out;
 }
 
-double mean_distance(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& known) {
-  double total = 0.0;
-  for (const auto& row : rows.rowwise())
-    total += std::sqrt((known.rowwise() - row).rowwise().squaredNorm().minCoeff());
-  return total / static_cast<double>(rows.rows());
-}
-
 class Comparison {
  public:
-  Comparison(const ReadingRows& readings, const SiteModel& site)
-      : readings_(readings), scale_(site.scale) {
-    known_ = features(site.readings, scale_, kWindow);
+  Comparison(const ReadingRows& readings, const KnownReadings& known, int most_compared)
+      : readings_(readings), scale_(known.scale), most_compared_(most_compared) {
+    known_ = thinned(sequence_features(known.rows, known.begins, scale_, kWindow), kMostKnown);
   }
 
   double operator()(const Mat3& R_site_sensor) const {
-    return mean_distance(thinned(features(turned(readings_, R_site_sensor), scale_, kWindow)),
-                         known_);
+    const Eigen::MatrixXd own =
+        thinned(features(turned(readings_, R_site_sensor), scale_, kWindow), most_compared_);
+    return squared_distances(own, known_).rowwise().minCoeff().cwiseSqrt().mean();
   }
 
  private:
   const ReadingRows& readings_;
   const ReadingScale& scale_;
+  Eigen::Index most_compared_;
   Eigen::MatrixXd known_;
 };
 
 // The turn that brings readings nearest, with the sign that they have.
-SensorTurn best_turn(const ReadingRows& readings, const SiteModel& site) {
-  const Comparison misfit(readings, site);
-  const Vec3 axis = site.scale.mean.head<3>().transpose().normalized();
+SensorTurn best_turn(const ReadingRows& readings, const KnownReadings& known, int most_compared) {
+  const Comparison misfit(readings, known, most_compared);
+  const Vec3 axis = known.scale.mean.head<3>().transpose().normalized();
   const Vec3 felt = readings.leftCols<3>().colwise().mean().transpose();
   const Mat3 upright = Quat::FromTwoVectors(felt, axis).toRotationMatrix();
   const auto turn_by = [&](double turn_rad) -> Mat3 {
@@ -74,8 +70,8 @@ SensorTurn best_turn(const ReadingRows& readings, const SiteModel& site) {
 
 }  // namespace
 
-double misfit_of(const ReadingRows& readings, const SiteModel& site) {
-  return Comparison(readings, site)(Mat3::Identity());
+double misfit_of(const ReadingRows& readings, const KnownReadings& known) {
+  return Comparison(readings, known, kMostCompared)(Mat3::Identity());
 }
 
 ReadingRows SensorTurn::corrected(ReadingRows readings) const {
@@ -83,11 +79,12 @@ ReadingRows SensorTurn::corrected(ReadingRows readings) const {
   return turned(readings, R_site_sensor);
 }
 
-SensorTurn estimated_turn(const ReadingRows& readings, const SiteModel& site) {
-  const SensorTurn as_it_is = best_turn(readings, site);
+SensorTurn estimated_turn(const ReadingRows& readings, const KnownReadings& known,
+                          int most_compared) {
+  const SensorTurn as_it_is = best_turn(readings, known, most_compared);
   ReadingRows negated = readings;
   negated.leftCols<3>() *= -1.0;
-  SensorTurn other = best_turn(negated, site);
+  SensorTurn other = best_turn(negated, known, most_compared);
   other.is_negated = true;
   return other.misfit < kOppositeSign * as_it_is.misfit ? other : as_it_is;
 }

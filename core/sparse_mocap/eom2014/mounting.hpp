@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "sparse_mocap/eom2014/trained_model.hpp"
+#include "sparse_mocap/eom2014/known_readings.hpp"
 
 namespace sparse_mocap::eom2014 {
 
@@ -18,12 +18,15 @@ struct SensorTurn {
 
 // How far readings are from the nearest of those that the model was trained on, on average, in
 // deviations.
-double misfit_of(const ReadingRows& readings, const SiteModel& site);
+double misfit_of(const ReadingRows& readings, const KnownReadings& known);
 
 // The turn under which readings come nearest to those that the model was trained on: what is felt
 // on average, gravity most of all, gives two of the angles, and the misfit the one about it. Small
 // improvements do not count, so that a sensor that sits as it should keeps its axes.
 // Accelerations of the opposite sign are tried as well.
-SensorTurn estimated_turn(const ReadingRows& readings, const SiteModel& site);
+//
+// most_compared: of so many instants, evenly over the readings.
+SensorTurn estimated_turn(const ReadingRows& readings, const KnownReadings& known,
+                          int most_compared = 150);
 
 }  // namespace sparse_mocap::eom2014

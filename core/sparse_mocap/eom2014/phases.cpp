@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+
+#include "sparse_mocap/base/errors.hpp"
 
 namespace sparse_mocap::eom2014 {
 namespace {
@@ -75,11 +78,42 @@ Phase begun(std::size_t side, std::size_t t, const Stands& stands,
   return side == 0 ? Phase::left_step : Phase::right_step;
 }
 
+bool is_step(Phase phase) { return phase == Phase::left_step || phase == Phase::right_step; }
+
+// The step after standing becomes the start, and the one before it the stop; a single step between
+// is neither.
+void name_starts_and_stops(std::vector<Phase>& phases) {
+  const std::vector<Phase> found = phases;
+  for (std::size_t begin = 0, end = 0; begin < found.size(); begin = end) {
+    while (end < found.size() && found[end] == found[begin]) ++end;
+    if (!is_step(found[begin])) continue;
+    const bool is_first = begin > 0 && found[begin - 1] == Phase::standing;
+    const bool is_last = end < found.size() && found[end] == Phase::standing;
+    if (is_first == is_last) continue;
+    std::fill(phases.begin() + static_cast<std::ptrdiff_t>(begin),
+              phases.begin() + static_cast<std::ptrdiff_t>(end),
+              is_first ? Phase::start : Phase::stop);
+  }
+}
+
+std::optional<Phase> phase_named(std::string_view name) {
+  for (int p = 0; p < kNumPhases; ++p)
+    if (name_of(static_cast<Phase>(p)) == name) return static_cast<Phase>(p);
+  return std::nullopt;
+}
+
+std::string all_names() {
+  std::string names;
+  for (int p = 0; p < kNumPhases; ++p)
+    names += (p == 0 ? "" : ", ") + std::string(name_of(static_cast<Phase>(p)));
+  return names;
+}
+
 }  // namespace
 
 std::string_view name_of(Phase phase) {
-  static constexpr std::array<std::string_view, kNumPhases> kNames{"standing", "left_step",
-                                                                   "right_step", "jump"};
+  static constexpr std::array<std::string_view, kNumPhases> kNames{
+      "standing", "left_step", "right_step", "jump", "start", "stop"};
   return kNames.at(static_cast<std::size_t>(phase));
 }
 
@@ -104,6 +138,7 @@ std::vector<Phase> phases_of(const Eigen::Matrix2Xd& contacts, double rate_hz) {
     }
     phases.push_back(phase);
   }
+  name_starts_and_stops(phases);
   return phases;
 }
 
@@ -112,6 +147,34 @@ int num_steps(const Eigen::Matrix2Xd& contacts, double rate_hz) {
   for (const auto& on : stands_of(contacts, rate_hz))
     for (std::size_t t = 1; t < on.size(); ++t) count += leaves(on, t) ? 1 : 0;
   return count;
+}
+
+std::vector<Segment> segments_of(const std::vector<Phase>& phases, double rate_hz) {
+  std::vector<Segment> segments;
+  for (std::size_t t = 0; t < phases.size(); ++t)
+    if (t == 0 || phases[t] != phases[t - 1])
+      segments.push_back({static_cast<double>(t) / rate_hz, std::string(name_of(phases[t]))});
+  return segments;
+}
+
+std::vector<Phase> phases_from(const std::vector<Segment>& segments, Eigen::Index num_frames,
+                               double rate_hz, const std::string& clip) {
+  const std::string begin = "the phases of the clip '" + clip + "' ";
+  if (segments.empty() || segments.front().begin_s != 0.0)
+    throw ConfigError(begin + "do not begin at 0 s");
+  std::vector<Phase> phases(static_cast<std::size_t>(num_frames));
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    const auto phase = phase_named(segments[s].label);
+    if (!phase)
+      throw ConfigError(begin + "have one named '" + segments[s].label + "'; choose from " +
+                        all_names());
+    if (s > 0 && !(segments[s].begin_s > segments[s - 1].begin_s))
+      throw ConfigError(begin + "are not in the order of their times");
+    const double first = std::round(segments[s].begin_s * rate_hz);
+    if (first < static_cast<double>(num_frames))
+      std::fill(phases.begin() + static_cast<std::ptrdiff_t>(first), phases.end(), *phase);
+  }
+  return phases;
 }
 
 }  // namespace sparse_mocap::eom2014

@@ -57,10 +57,17 @@ ReadingRows reading_rows(const std::vector<Reading>& take, double rate_hz) {
   return rows;
 }
 
-ReadingRows in_si_units(ReadingRows readings, std::vector<std::string>& notes) {
+ReadingRows Units::converted(ReadingRows readings) const {
+  readings.leftCols<3>() *= to_mps2;
+  readings.rightCols<3>() *= to_radps;
+  return readings;
+}
+
+Units units_of(const ReadingRows& readings, std::vector<std::string>& notes) {
+  Units units;
   const double gravity = readings.leftCols<3>().colwise().mean().norm();
   if (gravity > kLeastG && gravity < kMostG) {
-    readings.leftCols<3>() *= kGravity_mps2;
+    units.to_mps2 = kGravity_mps2;
     notes.emplace_back("accelerations were converted from g");
   } else if (gravity < kLeastGravity_mps2) {
     throw ConfigError("the recording's accelerations have no gravity in them: " +
@@ -69,10 +76,10 @@ ReadingRows in_si_units(ReadingRows readings, std::vector<std::string>& notes) {
   }
   const double turning = std::sqrt(readings.rightCols<3>().rowwise().squaredNorm().mean());
   if (turning > kFastestLimb_radps) {
-    readings.rightCols<3>() *= kRadiansPerDegree;
+    units.to_radps = kRadiansPerDegree;
     notes.emplace_back("angular velocities were converted from degrees a second");
   }
-  return readings;
+  return units;
 }
 
 ReadingRows smoothed(const ReadingRows& readings, double sigma_frames) {
@@ -119,6 +126,25 @@ Eigen::MatrixXd features(const ReadingRows& readings, const ReadingScale& scale,
       out.row(t).segment<6>(6 * (by + window)) =
           share * scaled.row(std::clamp<Eigen::Index>(t + by, 0, readings.rows() - 1));
   return out;
+}
+
+Eigen::MatrixXd sequence_features(const ReadingRows& readings, const std::vector<int>& begins,
+                                  const ReadingScale& scale, int window) {
+  Eigen::MatrixXd out(readings.rows(), 6 * (2 * window + 1));
+  for (std::size_t s = 0; s < begins.size(); ++s) {
+    const Eigen::Index begin = begins[s];
+    const Eigen::Index end = s + 1 < begins.size() ? begins[s + 1] : readings.rows();
+    out.middleRows(begin, end - begin) =
+        features(readings.middleRows(begin, end - begin), scale, window);
+  }
+  return out;
+}
+
+Eigen::MatrixXd squared_distances(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd out = -2.0 * a * b.transpose();
+  out.colwise() += a.rowwise().squaredNorm();
+  out.rowwise() += b.rowwise().squaredNorm().transpose();
+  return out.cwiseMax(0.0);
 }
 
 }  // namespace sparse_mocap::eom2014

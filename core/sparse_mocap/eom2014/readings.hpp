@@ -13,9 +13,17 @@ namespace sparse_mocap::eom2014 {
 // than a second, or of which more than half is missing.
 ReadingRows reading_rows(const std::vector<Reading>& take, double rate_hz);
 
-// Readings in m/s^2 and rad/s of phones that tell g or degrees a second; what was converted is
-// added to the notes. Throws ConfigError for accelerations without gravity.
-ReadingRows in_si_units(ReadingRows readings, std::vector<std::string>& notes);
+// What brings readings to m/s^2 and rad/s: some phones tell g or degrees a second.
+struct Units {
+  double to_mps2 = 1.0;
+  double to_radps = 1.0;
+
+  ReadingRows converted(ReadingRows readings) const;
+};
+
+// Told by the size of gravity and how fast limbs can turn; what is converted is added to the notes.
+// Throws ConfigError for accelerations without gravity.
+Units units_of(const ReadingRows& readings, std::vector<std::string>& notes);
 
 // Each channel by a Gaussian filter (Eom et al. 2014, section 4.1).
 ReadingRows smoothed(const ReadingRows& readings, double sigma_frames);
@@ -33,5 +41,11 @@ struct ReadingScale {
 // What a mapping sees of each reading: the scaled readings from `window` before it to `window`
 // after it, those beyond the ends like the last. frames x 6 (2 window + 1), of a length near 1.
 Eigen::MatrixXd features(const ReadingRows& readings, const ReadingScale& scale, int window);
+// Of several sequences after one another, which begin at these rows; windows end where they do.
+Eigen::MatrixXd sequence_features(const ReadingRows& readings, const std::vector<int>& begins,
+                                  const ReadingScale& scale, int window);
+
+// Squared distances between the rows of two matrices, rows of a x rows of b.
+Eigen::MatrixXd squared_distances(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 }  // namespace sparse_mocap::eom2014

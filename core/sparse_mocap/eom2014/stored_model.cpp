@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cstdint>
 
 #include "sparse_mocap/base/errors.hpp"
@@ -7,7 +8,11 @@
 namespace sparse_mocap::eom2014 {
 namespace {
 
-constexpr int kVersion = 1;  // of what a model holds
+constexpr int kVersion = 2;  // of what a model holds
+
+std::string site_name(int index) {
+  return std::string(all_sites().at(static_cast<std::size_t>(index)).name);
+}
 
 [[noreturn]] void refuse(const Model& model, const std::string& problem) {
   throw FormatError({model.path}, problem, "train it again with this version");
@@ -29,6 +34,8 @@ Perceptron perceptron_in(const Model& model, const std::string& name, Eigen::Ind
   out.b2 = model.vector<double>(name + ".b2", num_outputs);
   return out;
 }
+
+std::string prefix_of(std::size_t type) { return "type" + std::to_string(type) + "."; }
 
 void store(const std::string& name, const SiteModel& site, Model& model) {
   model.set(name + ".readings", site.readings);
@@ -65,9 +72,9 @@ HiddenMarkovModel hmm_in(const Model& model, const std::string& name) {
   return out;
 }
 
-SiteModel site_in(const Model& model, int index, Eigen::Index num_frames, Eigen::Index dimensions,
-                  int window) {
-  const std::string name(all_sites().at(static_cast<std::size_t>(index)).name);
+SiteModel site_in(const Model& model, const std::string& prefix, int index, Eigen::Index num_frames,
+                  Eigen::Index dimensions, int window) {
+  const std::string name = prefix + site_name(index);
   const Eigen::Index num_inputs = 6 * (2 * window + 1);
   SiteModel out;
   out.site = index;
@@ -87,65 +94,109 @@ SiteModel site_in(const Model& model, int index, Eigen::Index num_frames, Eigen:
   return out;
 }
 
-std::vector<int> begins_in(const Model& model, Eigen::Index num_frames) {
-  const auto stored = model.vector<std::int32_t>("sequence_begins");
+std::vector<int> begins_in(const Model& model, const std::string& prefix, Eigen::Index num_frames) {
+  const std::string name = prefix + "sequence_begins";
+  const auto stored = model.vector<std::int32_t>(name);
   std::vector<int> begins(stored.begin(), stored.end());
   for (std::size_t s = 0; s < begins.size(); ++s) {
     const Eigen::Index end = s + 1 < begins.size() ? begins[s + 1] : num_frames;
     if (begins[s] < 0 || end - begins[s] < 2 || (s == 0 && begins[s] != 0))
-      refuse(model, "'sequence_begins' does not divide its frames");
+      refuse(model, "'" + name + "' does not divide its frames");
   }
-  if (begins.empty()) refuse(model, "'sequence_begins' is empty");
+  if (begins.empty()) refuse(model, "'" + name + "' is empty");
   return begins;
 }
 
-MotionModel motion_in(const Model& model, const std::vector<int>& begins, int dimensions) {
+std::vector<Phase> phases_in(const Model& model, const std::string& prefix,
+                             Eigen::Index num_frames) {
+  std::vector<Phase> phases;
+  for (const std::int32_t phase : model.vector<std::int32_t>(prefix + "phases", num_frames)) {
+    if (phase < 0 || phase >= kNumPhases)
+      refuse(model, "'" + prefix + "phases' has an unknown one");
+    phases.push_back(static_cast<Phase>(phase));
+  }
+  return phases;
+}
+
+MotionModel motion_in(const Model& model, const std::string& prefix, const std::vector<int>& begins,
+                      int dimensions) {
   MotionData data;
-  data.poses = model.matrix<double>("poses", {}, kNumPoseChannels);
+  data.poses = model.matrix<double>(prefix + "poses", {}, kNumPoseChannels);
   const Eigen::Index n = data.poses.rows();
-  data.velocities = model.matrix<double>("velocities", n - static_cast<Eigen::Index>(begins.size()),
-                                         kNumVelocityChannels);
+  data.velocities = model.matrix<double>(
+      prefix + "velocities", n - static_cast<Eigen::Index>(begins.size()), kNumVelocityChannels);
   for (std::size_t s = 0; s < begins.size(); ++s) {
     const Eigen::Index end = s + 1 < begins.size() ? begins[s + 1] : n;
     for (int t = begins[s] + 1; t < end; ++t) data.steps.push_back(t);
   }
   Latent latent;
-  latent.X = model.matrix<double>("latent", n, dimensions);
-  latent.pose.alpha = model.vector<double>("alpha", 3);
-  latent.velocity.beta = model.vector<double>("beta", 4);
+  latent.X = model.matrix<double>(prefix + "latent", n, dimensions);
+  latent.pose.alpha = model.vector<double>(prefix + "alpha", 3);
+  latent.velocity.beta = model.vector<double>(prefix + "beta", 4);
   if (latent.pose.alpha.minCoeff() <= 0.0 || latent.velocity.beta.minCoeff() <= 0.0)
-    refuse(model, "'alpha' and 'beta' are positive");
+    refuse(model, "'" + prefix + "alpha' and 'beta' are positive");
   return {std::move(data), std::move(latent)};
 }
 
-// Models that were trained before feet, toes and hands were kept know none.
-ExtremityRows extremities_in(const Model& model, Eigen::Index num_frames) {
-  if (!model.tensors.contains("extremities"))
-    return ExtremityRows::Zero(num_frames, kExtremityColumns);
-  return model.matrix<double>("extremities", num_frames, kExtremityColumns);
+Eigen::Matrix<std::int32_t, Eigen::Dynamic, 1> integers(const auto& values) {
+  Eigen::Matrix<std::int32_t, Eigen::Dynamic, 1> out(static_cast<Eigen::Index>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    out[static_cast<Eigen::Index>(i)] = static_cast<std::int32_t>(values[i]);
+  return out;
+}
+
+void store(const std::string& prefix, const MotionType& type, Model& model) {
+  model.set(prefix + "sequence_begins", integers(type.begins));
+  model.set(prefix + "phases", integers(type.phases));
+  model.set(prefix + "poses", type.motion.data().poses);
+  model.set(prefix + "velocities", type.motion.data().velocities);
+  model.set(prefix + "extremities", type.extremities);
+  model.set(prefix + "latent", type.motion.latent().X);
+  model.set(prefix + "alpha", type.motion.latent().pose.alpha);
+  model.set(prefix + "beta", type.motion.latent().velocity.beta);
+  for (const auto& site : type.sites) store(prefix + site_name(site.site), site, model);
+  model.metadata[prefix + "name"] = type.name;
+  model.metadata[prefix + "log_posterior"] = std::to_string(type.motion.log_posterior());
+}
+
+MotionType type_in(const Model& model, const std::string& prefix, const Config& config) {
+  const Eigen::Index n = model.matrix<double>(prefix + "poses", {}, kNumPoseChannels).rows();
+  auto begins = begins_in(model, prefix, n);
+  MotionModel motion = motion_in(model, prefix, begins, config.latent_dimensions);
+  std::vector<SiteModel> sites;
+  for (int index = 0; index < static_cast<int>(all_sites().size()); ++index)
+    if (model.tensors.contains(prefix + site_name(index) + ".readings"))
+      sites.push_back(
+          site_in(model, prefix, index, n, config.latent_dimensions, config.window_frames));
+  if (sites.empty()) refuse(model, "the model has readings of no site");
+  const auto name = model.metadata.find(prefix + "name");
+  return {name == model.metadata.end() ? "" : name->second,
+          std::move(begins),
+          phases_in(model, prefix, n),
+          std::move(motion),
+          model.matrix<double>(prefix + "extremities", n, kExtremityColumns),
+          std::move(sites)};
+}
+
+void require_same_sites(const Model& model, const std::vector<MotionType>& types) {
+  for (const auto& type : types)
+    if (!std::equal(type.sites.begin(), type.sites.end(), types.front().sites.begin(),
+                    types.front().sites.end(),
+                    [](const auto& a, const auto& b) { return a.site == b.site; }))
+      refuse(model, "its types of motion have sensors at different sites");
 }
 
 }  // namespace
 
 Model stored(const TrainedModel& trained, const Config& config) {
   Model model{"eom2014", kVersion, training_options(config), {}, {}};
-  model.metadata["log_posterior"] = std::to_string(trained.motion.log_posterior());
   const StandardBones bones = bones_of(trained.skeleton);
   Eigen::MatrixX3d rows(kNumStandardJoints, 3);
   for (Eigen::Index j = 0; j < rows.rows(); ++j)
     rows.row(j) = bones[static_cast<std::size_t>(j)].transpose();
   model.set("bones", rows);
-  Eigen::Matrix<std::int32_t, Eigen::Dynamic, 1> begins(trained.begins.size());
-  std::copy(trained.begins.begin(), trained.begins.end(), begins.begin());
-  model.set("sequence_begins", begins);
-  model.set("poses", trained.motion.data().poses);
-  model.set("velocities", trained.motion.data().velocities);
-  model.set("extremities", trained.extremities);
-  model.set("latent", trained.motion.latent().X);
-  model.set("alpha", trained.motion.latent().pose.alpha);
-  model.set("beta", trained.motion.latent().velocity.beta);
-  for (const auto& site : trained.sites)
-    store(std::string(all_sites().at(static_cast<std::size_t>(site.site)).name), site, model);
+  for (std::size_t k = 0; k < trained.types.size(); ++k)
+    store(prefix_of(k), trained.types[k], model);
   return model;
 }
 
@@ -153,21 +204,17 @@ TrainedModel restored(const Model& model, const Config& config) {
   if (model.method != "eom2014")
     refuse(model, "is a model of '" + model.method + "', not of 'eom2014'");
   if (model.version > kVersion) refuse(model, "was made by a newer version");
+  if (model.version < kVersion) refuse(model, "was made by an older version");
   const auto bones = model.matrix<double>("bones", kNumStandardJoints, 3);
   StandardBones lengths;
   for (Eigen::Index j = 0; j < bones.rows(); ++j)
     lengths[static_cast<std::size_t>(j)] = bones.row(j).transpose();
-  const Eigen::Index n = model.matrix<double>("poses", {}, kNumPoseChannels).rows();
-  auto begins = begins_in(model, n);
-  MotionModel motion = motion_in(model, begins, config.latent_dimensions);
-  std::vector<SiteModel> sites;
-  for (int index = 0; index < static_cast<int>(all_sites().size()); ++index)
-    if (model.tensors.contains(std::string(all_sites()[static_cast<std::size_t>(index)].name) +
-                               ".readings"))
-      sites.push_back(site_in(model, index, n, config.latent_dimensions, config.window_frames));
-  if (sites.empty()) refuse(model, "the model has readings of no site");
-  return {make_standard_skeleton(lengths), std::move(begins), std::move(motion),
-          extremities_in(model, n), std::move(sites)};
+  TrainedModel trained{make_standard_skeleton(lengths), {}};
+  do {
+    trained.types.push_back(type_in(model, prefix_of(trained.types.size()), config));
+  } while (model.tensors.contains(prefix_of(trained.types.size()) + "poses"));
+  require_same_sites(model, trained.types);
+  return trained;
 }
 
 }  // namespace sparse_mocap::eom2014

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <utility>
 
 #include "sparse_mocap/base/errors.hpp"
 #include "sparse_mocap/eom2014/trained_model.hpp"
@@ -34,9 +35,12 @@ std::vector<TrainingSequence> for_motion(const std::vector<TrainingSequence>& al
   return used;
 }
 
-std::vector<Phase> checked_phases(const TrainingSequence& sequence, double rate_hz) {
+std::vector<Phase> checked_phases(const TrainingClip& clip, const TrainingSequence& sequence,
+                                  double rate_hz) {
+  if (!clip.segments.empty())
+    return phases_from(clip.segments, sequence.poses.rows(), rate_hz, clip.name);
   if (num_steps(sequence.contacts, rate_hz) < kFewestSteps)
-    throw ConfigError("the clip '" + sequence.name +
+    throw ConfigError("the clip '" + clip.name +
                       "' has no steps: its feet stay on the floor; choose clips of locomotion");
   return phases_of(sequence.contacts, rate_hz);
 }
@@ -75,7 +79,8 @@ void learn_mapping(const Config& config, const Eigen::MatrixXd& X, const std::ve
   PerceptronSettings settings;
   settings.num_hidden = config.hidden_units;
   settings.weight_decay = config.weight_decay;
-  const Eigen::MatrixXd inputs = training_features(site, begins, config.window_frames);
+  const Eigen::MatrixXd inputs =
+      sequence_features(site.readings, begins, site.scale, config.window_frames);
   site.perceptron = trained(inputs, X, settings, progress);
   for (const Phase phase : site.recognition.phases) {
     const Eigen::MatrixXd own = rows_of(inputs, phases, phase);
@@ -85,62 +90,126 @@ void learn_mapping(const Config& config, const Eigen::MatrixXd& X, const std::ve
   }
 }
 
-}  // namespace
+// What is learnt from: the clips as a site's sensor sees them, for each site.
+using SiteSequences = std::vector<std::vector<TrainingSequence>>;
 
-Eigen::MatrixXd training_features(const SiteModel& site, const std::vector<int>& begins,
-                                  int window) {
-  Eigen::MatrixXd out(site.readings.rows(), 6 * (2 * window + 1));
-  for (std::size_t s = 0; s < begins.size(); ++s) {
-    const Eigen::Index begin = begins[s];
-    const Eigen::Index end = s + 1 < begins.size() ? begins[s + 1] : site.readings.rows();
-    out.middleRows(begin, end - begin) =
-        features(site.readings.middleRows(begin, end - begin), site.scale, window);
+std::vector<TrainingSequence> sequences_of(const Config& config,
+                                           const std::vector<TrainingClip>& clips, int site) {
+  auto all = training_sequences(clips, {site, config.position_along_bone, config.rate_hz});
+  const double leg_m = leg_length_m(bones_of(clips.front().motion.skeleton));
+  for (std::size_t c = 0; c < clips.size(); ++c) {
+    auto& sequence = all[c];
+    sequence.readings = smoothed(sequence.readings, config.reading_smoothing_s * config.rate_hz);
+    // On the first performer's legs, on which poses are shown.
+    const double scale = leg_m / leg_length_m(bones_of(clips[c].motion.skeleton));
+    sequence.poses.col(kHeightChannel) *= scale;
+    sequence.velocities.col(kHeightChannel) *= scale;
+    sequence.velocities.middleCols<2>(kRootVelocityChannel) *= scale;
   }
+  return all;
+}
+
+// The classes in the order in which they appear, with their clips.
+std::vector<std::pair<std::string, std::vector<std::size_t>>> by_class(
+    const std::vector<TrainingClip>& clips) {
+  std::vector<std::pair<std::string, std::vector<std::size_t>>> classes;
+  for (std::size_t c = 0; c < clips.size(); ++c) {
+    const auto known = std::find_if(classes.begin(), classes.end(), [&](const auto& one) {
+      return one.first == clips[c].motion_class;
+    });
+    if (known == classes.end())
+      classes.push_back({clips[c].motion_class, {c}});
+    else
+      known->second.push_back(c);
+  }
+  return classes;
+}
+
+template <typename T>
+std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::size_t>& indices) {
+  std::vector<T> out;
+  for (const std::size_t i : indices) out.push_back(all[i]);
   return out;
 }
 
-TrainedModel trained_model(const Config& config, const std::vector<TrainingClip>& clips,
-                           const Progress& progress) {
-  std::vector<int> begins;
-  std::vector<Phase> motion_phases;
-  std::vector<std::vector<Phase>> phases;
-  std::vector<SiteModel> sites;
+SiteModel site_model(int site, const std::vector<TrainingSequence>& all,
+                     const std::vector<TrainingSequence>& used,
+                     const std::vector<std::vector<Phase>>& phases) {
+  SiteModel out;
+  out.site = site;
+  Eigen::Index num_frames = 0;
+  for (const auto& sequence : used) num_frames += sequence.readings.rows();
+  out.readings.resize(num_frames, 6);
+  Eigen::Index at = 0;
+  for (const auto& sequence : used) {
+    out.readings.middleRows(at, sequence.readings.rows()) = sequence.readings;
+    at += sequence.readings.rows();
+  }
+  std::vector<ReadingRows> readings;
+  for (const auto& sequence : all) readings.push_back(sequence.readings);
+  out.scale = ReadingScale::of(out.readings);
+  out.recognition = PhaseRecognition::trained(readings, phases);
+  return out;
+}
+
+MotionType learnt_type(const Config& config, const std::string& name, const SiteSequences& clips,
+                       std::vector<std::vector<Phase>> phases, const Progress& progress) {
+  drop_rare(phases);
   MotionData data;
+  std::vector<int> begins;
+  std::vector<Phase> used_phases;
   ExtremityRows extremities;
-  for (const int index : sites_of(config)) {
-    auto all = training_sequences(clips, {index, config.position_along_bone, config.rate_hz});
-    for (auto& sequence : all)
-      sequence.readings = smoothed(sequence.readings, config.reading_smoothing_s * config.rate_hz);
-    const auto used = for_motion(all, config.motion_frames);
-    if (sites.empty()) {
+  std::vector<SiteModel> sites;
+  const auto indices = sites_of(config);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const auto used = for_motion(clips[i], config.motion_frames);
+    if (i == 0) {
       data = joined(used);
       extremities.resize(data.poses.rows(), kExtremityColumns);
-      for (const auto& sequence : all) phases.push_back(checked_phases(sequence, config.rate_hz));
-      drop_rare(phases);
       for (std::size_t s = 0; s < used.size(); ++s) {
-        begins.push_back(static_cast<int>(motion_phases.size()));
+        begins.push_back(static_cast<int>(used_phases.size()));
         extremities.middleRows(begins.back(), used[s].extremities.rows()) = used[s].extremities;
-        motion_phases.insert(motion_phases.end(), phases[s].begin(),
-                             phases[s].begin() + used[s].poses.rows());
+        used_phases.insert(used_phases.end(), phases[s].begin(),
+                           phases[s].begin() + used[s].poses.rows());
       }
     }
-    SiteModel site;
-    site.site = index;
-    site.readings.resize(data.poses.rows(), 6);
-    std::vector<ReadingRows> readings;
-    for (std::size_t s = 0; s < used.size(); ++s)
-      site.readings.middleRows(begins[s], used[s].readings.rows()) = used[s].readings;
-    for (auto& sequence : all) readings.push_back(std::move(sequence.readings));
-    site.scale = ReadingScale::of(site.readings);
-    site.recognition = PhaseRecognition::trained(readings, phases);
-    sites.push_back(std::move(site));
+    sites.push_back(site_model(indices[i], clips[i], used, phases));
   }
   MotionModel motion =
       MotionModel::learnt(data, {config.latent_dimensions, config.iterations}, progress);
   for (auto& site : sites)
-    learn_mapping(config, motion.latent().X, begins, motion_phases, site, progress);
-  return {without_extremities(clips.front().motion.skeleton), std::move(begins), std::move(motion),
-          std::move(extremities), std::move(sites)};
+    learn_mapping(config, motion.latent().X, begins, used_phases, site, progress);
+  return {name,
+          std::move(begins),
+          std::move(used_phases),
+          std::move(motion),
+          std::move(extremities),
+          std::move(sites)};
+}
+
+}  // namespace
+
+TrainedModel trained_model(const Config& config, const std::vector<TrainingClip>& clips,
+                           const Progress& progress) {
+  SiteSequences sequences;
+  for (const int site : sites_of(config)) sequences.push_back(sequences_of(config, clips, site));
+  std::vector<std::vector<Phase>> phases;
+  for (std::size_t c = 0; c < clips.size(); ++c)
+    phases.push_back(checked_phases(clips[c], sequences.front()[c], config.rate_hz));
+  TrainedModel trained{without_extremities(clips.front().motion.skeleton), {}};
+  for (const auto& [name, indices] : by_class(clips)) {
+    SiteSequences own;
+    for (const auto& of_site : sequences) own.push_back(chosen(of_site, indices));
+    trained.types.push_back(learnt_type(config, name, own, chosen(phases, indices), progress));
+  }
+  return trained;
+}
+
+std::vector<Segment> found_phases(const Config& config, const TrainingClip& clip) {
+  TrainingClip without = clip;
+  without.segments.clear();
+  const auto sequence = sequences_of(config, {without}, sites_of(config).front()).front();
+  return segments_of(checked_phases(without, sequence, config.rate_hz), config.rate_hz);
 }
 
 }  // namespace sparse_mocap::eom2014

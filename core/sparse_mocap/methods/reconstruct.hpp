@@ -72,6 +72,7 @@ class LiveReconstructor {
   double rate_hz() const { return method_->rate_hz(); }
   double latency_s() const { return method_->latency_s() + readings_.delay_s(); }
   double history_s() const { return method_->history_s(); }
+  std::vector<std::string> notes() const { return method_->notes(); }
   int num_skipped() const { return num_skipped_; }  // readings that were given up
   // When the last reading was that any sensor was in; minus infinity before there is one.
   double last_reading_s() const { return last_reading_s_; }

@@ -108,4 +108,11 @@ Model train_model(const MethodEntry& method, const MethodSettings& settings,
   return method.train(settings, clips, progress);
 }
 
+std::vector<Segment> segments_of_clip(const MethodEntry& method, const MethodSettings& settings,
+                                      const TrainingClip& clip) {
+  if (method.segment == nullptr)
+    throw ConfigError("method " + method.info.name + " does not divide clips into phases");
+  return method.segment(settings, clip);
+}
+
 }  // namespace sparse_mocap

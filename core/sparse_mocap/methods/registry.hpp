@@ -31,4 +31,9 @@ std::unique_ptr<WholeTakeMethod> make_whole_take_method(const MethodEntry& metho
 Model train_model(const MethodEntry& method, const MethodSettings& settings,
                   const std::vector<TrainingClip>& clips, const Progress& progress);
 
+// The parts that training divides a clip into, such as phases of a step. Throws ConfigError for
+// methods that divide none, and for a clip that cannot be used.
+std::vector<Segment> segments_of_clip(const MethodEntry& method, const MethodSettings& settings,
+                                      const TrainingClip& clip);
+
 }  // namespace sparse_mocap

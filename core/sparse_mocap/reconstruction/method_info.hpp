@@ -77,13 +77,20 @@ struct MethodSettings {
   OptionValues options;
 };
 
+// A part of a clip, until the next one begins.
+struct Segment {
+  double begin_s = 0.0;
+  std::string label;
+};
+
 // One example that a model is trained from.
 struct TrainingClip {
   std::string name;
-  std::string motion_class;       // empty: not known
-  Motion motion;                  // on a standard skeleton
-  std::vector<Sensor> sensors;    // of readings
-  std::vector<Reading> readings;  // recorded with the motion, at its rate; empty: simulate them
+  std::string motion_class;         // empty: not known
+  Motion motion;                    // on a standard skeleton
+  std::vector<Sensor> sensors;      // of readings
+  std::vector<Reading> readings;    // recorded with the motion, at its rate; empty: simulate them
+  std::vector<Segment> segments{};  // as the method's `segment` gives them; empty: the method's own
 };
 
 // A method as the registry knows it. A factory that is null means that the method does not work
@@ -95,6 +102,8 @@ struct MethodEntry {
                                                       const MethodContext&) = nullptr;
   Model (*train)(const MethodSettings&, const std::vector<TrainingClip>&,
                  const Progress&) = nullptr;
+  // The parts that training divides a clip into; null: it divides none.
+  std::vector<Segment> (*segment)(const MethodSettings&, const TrainingClip&) = nullptr;
 };
 
 }  // namespace sparse_mocap

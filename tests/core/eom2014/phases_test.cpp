@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+
+#include "support/refusals.hpp"
 
 namespace sparse_mocap::eom2014 {
 namespace {
@@ -20,10 +24,11 @@ Eigen::Matrix2Xd contacts_of(const std::string& frames) {
   return contacts;
 }
 
-// A letter a frame: s standing, l left step, r right step, j jump.
+// A letter a frame: s standing, l left step, r right step, j jump, < start, > stop.
 std::string letters(const std::string& frames) {
   std::string out;
-  for (const Phase phase : phases_of(contacts_of(frames), kRate_hz)) out += name_of(phase)[0];
+  for (const Phase phase : phases_of(contacts_of(frames), kRate_hz))
+    out += "slrj<>"[static_cast<std::size_t>(phase)];
   return out;
 }
 
@@ -34,7 +39,38 @@ TEST(EomPhases, AStepLastsUntilTheOtherFootLeavesTheFloor) {
 
 TEST(EomPhases, StandingIsBeforeTheFirstStepAndAfterTheLast) {
   EXPECT_EQ(letters("BBBBBBBBBBBBBBRRRRRRRRBBBBLLLLLLLLBBBBBBBBBBBBBB"),
-            "ssssssssssssssllllllllllllrrrrrrrrssssssssssssss");
+            "ssssssssssssss<<<<<<<<<<<<>>>>>>>>ssssssssssssss");
+}
+
+TEST(EomPhases, OnlyTheFirstStepAndTheLastOneAreStartAndStop) {
+  EXPECT_EQ(letters("BBBBBBBBBBBBBBRRRRRRBBLLLLLLBBRRRRRRBBLLLLLLBBBBBBBBBBBBBB"),
+            "ssssssssssssss<<<<<<<<rrrrrrrrllllllll>>>>>>ssssssssssssss");
+  EXPECT_EQ(letters("BBBBBBBBBBBBBBRRRRRRBBBBBBBBBBBBBB"), "ssssssssssssssllllllssssssssssssss");
+}
+
+TEST(EomPhases, SegmentsSayWherePhasesBegin) {
+  const auto phases = phases_of(contacts_of("RRRRRRBBBBLLLLLLLLBBBBRRRRRRRR"), kRate_hz);
+  auto segments = segments_of(phases, kRate_hz);
+  ASSERT_EQ(segments.size(), 3U);
+  EXPECT_EQ(segments[1].label, "right_step");
+  EXPECT_DOUBLE_EQ(segments[1].begin_s, 10.0 / 30.0);
+  EXPECT_EQ(phases_from(segments, 30, kRate_hz, "walk"), phases);
+  segments[1].begin_s = 0.5;
+  segments.back() = {100.0, "stop"};
+  const auto moved = phases_from(segments, 30, kRate_hz, "walk");
+  EXPECT_EQ(std::count(moved.begin(), moved.end(), Phase::left_step), 15);
+  EXPECT_EQ(std::count(moved.begin(), moved.end(), Phase::right_step), 15);
+}
+
+TEST(EomPhases, SegmentsThatMakeNoSenseAreRefused) {
+  const auto refused = [](const std::string& text, const std::vector<Segment>& segments) {
+    EXPECT_REFUSED(ConfigError, text, phases_from(segments, 30, kRate_hz, "walk"));
+  };
+  refused("phases of the clip 'walk' do not begin at 0 s", {{0.1, "jump"}});
+  refused("do not begin", {});
+  refused("one named 'hop'; choose from standing, left_step", {{0.0, "hop"}});
+  refused("not in the order", {{0.0, "jump"}, {0.5, "standing"}, {0.5, "jump"}});
+  refused("not in the order", {{0.0, "jump"}, {std::nan(""), "standing"}});
 }
 
 TEST(EomPhases, RunningHasStepsAndJumpingHasNone) {

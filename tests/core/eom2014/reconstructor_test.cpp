@@ -5,71 +5,14 @@
 
 #include <cmath>
 
-#include "sparse_mocap/eom2014/method.hpp"
-#include "sparse_mocap/eom2014/training_sequence.hpp"
+#include "eom2014/walk.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 #include "support/refusals.hpp"
-#include "support/synthetic.hpp"
 
 namespace sparse_mocap::eom2014 {
 namespace {
 
-// Legs that swing against each other, the pelvis as high as the lower foot allows: a walk on the
-// spot in which each foot leaves the floor.
-Motion walking_motion(int frames, double rate_hz) {
-  const Skeleton skeleton = sparse_mocap::testing::template_skeleton();
-  Motion motion = sparse_mocap::testing::resting_motion(skeleton, frames, rate_hz);
-  const auto bent = [](double angle) { return Quat(Eigen::AngleAxisd(angle, Vec3::UnitX())); };
-  for (int t = 0; t < frames; ++t) {
-    const double turn = 2.0 * kPi * t / rate_hz;
-    const double left = std::max(0.0, std::sin(turn)), right = std::max(0.0, -std::sin(turn));
-    using namespace standard_joint;
-    motion.rotation(t, lfemur) = bent(-0.7 * left);
-    motion.rotation(t, ltibia) = bent(1.2 * left);
-    motion.rotation(t, rfemur) = bent(-0.7 * right);
-    motion.rotation(t, rtibia) = bent(1.2 * right);
-    motion.rotation(t, lhumerus) = bent(0.4 * std::sin(turn));
-  }
-  return motion;
-}
-
-Sensor ankle() { return {find_site("left_ankle"), 1.0, Channel::specific_force}; }
-
-std::vector<Reading> take_of(const Motion& motion) {
-  const auto sequence =
-      training_sequences({{"take", "", motion, {}, {}}}, {find_site("left_ankle"), 1.0, 30.0})
-          .front();
-  std::vector<Reading> take;
-  for (Eigen::Index t = 0; t < sequence.readings.rows(); ++t) {
-    Reading reading(1);
-    reading.time_s = static_cast<double>(t) / 30.0;
-    reading.specific_force.col(0) = sequence.readings.row(t).head<3>();
-    reading.angular_velocity.col(0) = sequence.readings.row(t).tail<3>();
-    take.push_back(reading);
-  }
-  return take;
-}
-
-class EomReconstructor : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    const MethodSettings settings{"", {{"iterations", "60"}}};
-    model_ = std::make_shared<Model>(
-        method().train(settings, {{"walk", "", walking_motion(360, 120.0), {}, {}}}, Progress()));
-  }
-  static void TearDownTestSuite() { model_.reset(); }
-
-  static Reconstructor made(const OptionValues& options = {}, Sensor sensor = ankle()) {
-    MethodContext context;
-    context.model = model_;
-    context.sensors = {sensor};
-    return Reconstructor({"", options}, context);
-  }
-
-  static std::shared_ptr<const Model> model_;
-};
-
-std::shared_ptr<const Model> EomReconstructor::model_;
+class EomReconstructor : public EomWalk {};
 
 TEST_F(EomReconstructor, RefusesWhatItCannotUse) {
   EXPECT_REFUSED(ConfigError, "trained for a sensor at left_ankle, right_ankle, not at head",
@@ -127,6 +70,59 @@ TEST_F(EomReconstructor, FindsHowTheSensorIsTurned) {
       EXPECT_LT(poses[t].rotations[j].angularDistance(straight[t].rotations[j]), 0.2);
 }
 
+// The gyroscope says that the performer turns; the clip goes straight on.
+TEST_F(EomReconstructor, TurnsAsTheGyroscopeDoes) {
+  auto take = take_of(walking_motion(360, 120.0));
+  for (auto& reading : take) {
+    reading.gravity_direction.col(0) = reading.specific_force.col(0).normalized();
+    reading.angular_velocity.col(0) += 0.5 * reading.gravity_direction.col(0);
+  }
+  const auto turned_by = [&](const char* uses_gyroscope) {
+    auto reconstructor =
+        made({{"turns_by_gyroscope", uses_gyroscope}, {"estimates_mounting", "false"}});
+    const auto yaw =
+        headings(to_motion(reconstructor.solve(take, Progress()), reconstructor.skeleton(), 30.0));
+    return yaw.back() - yaw.front();
+  };
+  EXPECT_NEAR(turned_by("true"), 0.5 * 3.0, 0.25);
+  EXPECT_NEAR(turned_by("false"), 0.0, 0.1);
+}
+
+// Two types of motion, of which one is twice as fast.
+TEST_F(EomReconstructor, RecognisesTheTypeOfMotion) {
+  const Motion walk = walking_motion(360, 120.0);
+  Motion run = walking_motion(720, 120.0);
+  run.frame_time_s /= 2.0;
+  MethodContext context;
+  context.model = std::make_shared<Model>(
+      method().train({"", {{"iterations", "40"}}},
+                     {{"walk", "walk", walk, {}, {}}, {"run", "run", run, {}, {}}}, Progress()));
+  context.sensors = {ankle()};
+  for (const int type : {0, 1}) {
+    Reconstructor reconstructor({}, context);
+    const Motion& truth = type == 0 ? walk : run;
+    const auto poses = reconstructor.solve(take_of(truth), Progress());
+    for (const auto& pose : poses) EXPECT_EQ(pose.diagnostics.at("motion_type")[0], type);
+    const Eigen::MatrixXd errors =
+        joint_positions(to_motion(poses, reconstructor.skeleton(), 30.0), PositionFrame::heading) -
+        joint_positions(resampled(truth, 30.0), PositionFrame::heading);
+    EXPECT_LT(std::sqrt(errors.squaredNorm() / static_cast<double>(errors.size() / 3)), 0.04);
+  }
+}
+
+TEST_F(EomReconstructor, LearnsThePhasesThatItIsGiven) {
+  TrainingClip clip{"walk", "", walking_motion(360, 120.0), {}, {}};
+  clip.segments = method().segment({}, clip);
+  ASSERT_GT(clip.segments.size(), 3U);
+  EXPECT_EQ(clip.segments.front().begin_s, 0.0);
+  clip.segments.resize(2);
+  clip.segments[1] = {1.0, "jump"};
+  const Model learnt = method().train({"", {{"iterations", "5"}}}, {clip}, Progress());
+  EXPECT_TRUE(learnt.tensors.contains("type0.left_ankle.jump.transition"));
+  clip.segments[1].label = "hop";
+  EXPECT_REFUSED(ConfigError, "one named 'hop'", method().train({}, {clip}, Progress()));
+}
+
 // Feet and hands turn with the left thigh, so that its rotation tells theirs.
 Motion with_feet(const Motion& motion) {
   Motion full;
@@ -176,15 +172,20 @@ TEST_F(EomReconstructor, RefusesModelsThatAreNotItsOwn) {
     change(broken);
     EXPECT_REFUSED(FormatError, text, restored(broken, with_model({}, broken)));
   };
-  refused("has no tensor 'latent'", [](Model& m) { m.tensors.erase("latent"); });
+  refused("has no tensor 'type0.latent'", [](Model& m) { m.tensors.erase("type0.latent"); });
   refused("does not say its site", [](Model& m) { m.metadata.erase("site"); });
   refused("not of 'eom2014'", [](Model& m) { m.method = "held_pose"; });
   refused("newer version", [](Model& m) { m.version = 99; });
-  refused("are positive", [](Model& m) { m.set("alpha", Eigen::Vector3d(1.0, -1.0, 0.1)); });
+  refused("older version", [](Model& m) { m.version = 1; });
+  refused("unknown one", [](Model& m) {
+    const auto frames = static_cast<Eigen::Index>(m.matrix<double>("type0.poses").rows());
+    m.set("type0.phases", Eigen::Matrix<std::int32_t, Eigen::Dynamic, 1>::Constant(frames, 6));
+  });
+  refused("are positive", [](Model& m) { m.set("type0.alpha", Eigen::Vector3d(1.0, -1.0, 0.1)); });
   refused("does not divide",
-          [](Model& m) { m.set("sequence_begins", Eigen::Matrix<std::int32_t, 1, 1>(5)); });
+          [](Model& m) { m.set("type0.sequence_begins", Eigen::Matrix<std::int32_t, 1, 1>(5)); });
   refused("no probabilities", [](Model& m) {
-    m.set("left_ankle.left_step.transition", Eigen::Matrix3d::Ones().eval());
+    m.set("type0.left_ankle.left_step.transition", Eigen::Matrix3d::Ones().eval());
   });
 }
 

@@ -54,7 +54,7 @@ TEST(Registry, DescribesEveryMethod) {
   ASSERT_FALSE(methods().empty());
   EXPECT_EQ(methods().front().info.name, "path_regression");
   std::set<std::string> names;
-  for (const auto& [info, make_live, make_whole_take, train] : methods()) {
+  for (const auto& [info, make_live, make_whole_take, train, segment] : methods()) {
     EXPECT_TRUE(names.insert(info.name).second) << info.name;
     EXPECT_FALSE(info.title.empty());
     EXPECT_FALSE(info.summary.empty());
