@@ -16,6 +16,7 @@ __all__ = [
     "MethodInfo",
     "OptionInfo",
     "PresetInfo",
+    "Variant",
     "method_info",
     "methods",
     "option_values",
@@ -56,13 +57,28 @@ class OptionInfo:
 
 
 @dataclass(frozen=True)
+class Variant:
+    """One of the ways that an experiment compares."""
+
+    label: str
+    options: dict[str, str]
+    sensors: dict[str, list[str]]
+    """By site, with the channels that they give; none: those of the evaluation."""
+    method: str = ""
+    """Empty: the one whose experiment it is."""
+    in_best_quality: bool = False
+    """Of methods that work live as well."""
+    knows_all_clips: bool = False
+    """A database of all clips but the tests, not of the training clips alone."""
+
+
+@dataclass(frozen=True)
 class Experiment:
     """A comparison that a paper makes."""
 
     name: str
     help: str
-    variants: tuple[tuple[str, dict[str, str], dict[str, list[str]]], ...]
-    """Labels, options, and the sensors by site with the channels they give; none: any."""
+    variants: tuple[Variant, ...]
     pairs: tuple[tuple[str, str], ...]
     """Patterns on the names of training and test clips; none: the evaluation's scenario."""
     error: str
@@ -169,7 +185,7 @@ def _method(told: dict[str, Any]) -> MethodInfo:
             Experiment(
                 experiment["name"],
                 experiment["help"],
-                tuple(experiment["variants"]),
+                tuple(Variant(**variant) for variant in experiment["variants"]),
                 tuple(experiment["pairs"]),
                 experiment["error"],
             )

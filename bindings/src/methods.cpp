@@ -50,7 +50,14 @@ py::dict experiment_dict(const Experiment& experiment) {
     for (const Sensor& sensor : variant.sensors)
       sensors[py::str(std::string(all_sites()[static_cast<std::size_t>(sensor.site)].name))] =
           names_of(sensor.channels);
-    variants.append(py::make_tuple(variant.label, options, sensors));
+    py::dict told;
+    told["label"] = variant.label;
+    told["options"] = options;
+    told["sensors"] = sensors;
+    told["method"] = variant.method;
+    told["in_best_quality"] = variant.in_best_quality;
+    told["knows_all_clips"] = variant.knows_all_clips;
+    variants.append(told);
   }
   for (const auto& pair : experiment.pairs) pairs.append(py::make_tuple(pair.training, pair.test));
   py::dict out;

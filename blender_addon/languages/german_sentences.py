@@ -34,6 +34,10 @@ SENTENCES = {
     "Empty: the add-on makes a figure": "Leer: das Add-on macht eine Figur",
     "Choose a motion database first": "Zuerst eine Bewegungsdatenbank wählen",
     "Choose a take first": "Zuerst eine Aufnahme wählen",
+    "Train or open a model first": "Zuerst ein Modell trainieren oder öffnen",
+    "Train from the motion database": "Aus der Bewegungsdatenbank trainieren",
+    "Opening the model": "Das Modell wird geöffnet",
+    "One phone": "Ein Telefon",
     "{first} to {last}": "{first} bis {last}",
     "The motion database has nothing like this take: add clips of such movements to it": (
         "Die Bewegungsdatenbank enthält nichts Ähnliches: Clips solcher Bewegungen hinzufügen"

@@ -20,7 +20,6 @@ from ..scene.settings import scene_choice, settings_of
 from ..scene.takes import add_take
 from ..scene.targets import chosen_armatures, own_figure, placement_of
 from ..session import live, sensors
-from ..session.core import core
 from ..session.errors import InputError
 from ..session.job import Job
 from ..session.live import LiveSession, answer_of, one_line_of

@@ -6,8 +6,8 @@ import atexit
 import bpy
 from bpy.app.handlers import persistent
 
-from ..scene import live as live_scene
 from ..scene import latent_view, overlay, pose_guide, prompt, sensor_graph
+from ..scene import live as live_scene
 from ..scene.report import facts
 from ..scene.user_folder import user_folder
 from ..session import job, log_file

@@ -108,7 +108,7 @@ def spread_m(armature: Object) -> Floats | None:
 
 
 def latent_now() -> tuple[int, Floats] | None:
-    """The live pose's type of motion and its place in the latent space; None where there is none."""
+    """The live pose's type of motion and its place in the latent space; None without one."""
     return _followed.latent if _followed is not None else None
 
 

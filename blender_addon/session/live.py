@@ -99,7 +99,9 @@ class LiveSession:
             self._thread.join(STOP_WITHIN_S)
         return not self._thread.is_alive()
 
-    def go_live(self, database: Database | None, choice: MethodChoice, calibration: Any = None) -> None:
+    def go_live(
+        self, database: Database | None, choice: MethodChoice, calibration: Any = None
+    ) -> None:
         """Start the live preview. calibration: as for LivePoses.
 
         database: None for methods that need none.

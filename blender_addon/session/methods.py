@@ -42,9 +42,7 @@ class MethodChoice:
 models: FileCache[Any] = FileCache("trained model", lambda path: core().read_model(path))
 
 
-def choice_of(
-    method: str, preset: str, options: str, model: str = ""
-) -> tuple[MethodChoice, str]:
+def choice_of(method: str, preset: str, options: str, model: str = "") -> tuple[MethodChoice, str]:
     """The choice, and a warning if a name has changed; options: "KEY=VALUE, KEY=VALUE".
 
     Raises InputError for text that is not of that form.

@@ -24,6 +24,7 @@ TRAINING = "Training the model"
 PHASES = ("standing", "left_step", "right_step", "jump", "start", "stop")
 """By their numbers."""
 
+
 @dataclass(frozen=True)
 class TrainingChoices:
     """What a model is trained from."""

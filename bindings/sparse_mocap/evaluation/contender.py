@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..methods import Experiment, MethodInfo, method_info
+from ..methods import Experiment, MethodInfo, Variant, method_info
 
 __all__ = ["Contender", "contenders", "variants"]
 
@@ -23,6 +23,8 @@ class Contender:
     best_quality: bool = False
     sensors: Mapping[str, Sequence[str]] = field(default_factory=dict)
     """The channels of its sensors, by site; empty: those of the evaluation."""
+    knows_all_clips: bool = False
+    """Whether its database has all clips but the tests, not the training clips alone."""
 
     @property
     def info(self) -> MethodInfo:
@@ -57,8 +59,19 @@ def contenders(
 
 def variants(method: str, experiment: Experiment) -> list[Contender]:
     """Returns what an experiment of a method compares."""
-    is_live = method_info(method).works_live
-    return [
-        Contender(label, method, None, options, not is_live, sensors)
-        for label, options, sensors in experiment.variants
-    ]
+    return [_variant(method, variant) for variant in experiment.variants]
+
+
+def _variant(method: str, variant: Variant) -> Contender:
+    name = variant.method or method
+    info = method_info(name)
+    is_best = info.works_on_whole_takes and (variant.in_best_quality or not info.works_live)
+    return Contender(
+        variant.label,
+        name,
+        None,
+        variant.options,
+        is_best,
+        variant.sensors,
+        variant.knows_all_clips,
+    )

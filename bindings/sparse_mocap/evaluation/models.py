@@ -24,6 +24,8 @@ class Trainer:
     ) -> None:
         self._clips, self._files = clips, dict(files)
         self._models: dict[tuple[str, str, tuple[int, ...]], Model] = {}
+        self._of_training: dict[str, set[str]] = {}
+        """By method, the options that its models remember: those of training."""
 
     def model(self, contender: Contender, excluded: Sequence[int]) -> Model:
         """Returns the model from all clips but those excluded and the copies."""
@@ -33,15 +35,24 @@ class Trainer:
             for index, clip in enumerate(self._clips)
             if index not in hidden and not is_copy(clip)
         )
-        key = (contender.method, repr(sorted(contender.options.items())), used)
+        key = self._key(contender, used)
         if key not in self._models:
-            self._models[key] = train(
+            model = train(
                 contender.method,
                 [self._training_clip(index) for index in used],
                 preset=contender.preset or "",
                 options=option_values(contender.options),
             )
+            self._of_training[contender.method] = set(model.metadata)
+            self._models[self._key(contender, used)] = model
+            return model
         return self._models[key]
+
+    def _key(self, contender: Contender, used: tuple[int, ...]) -> tuple[str, str, tuple[int, ...]]:
+        """Returns the same for contenders that share a model."""
+        names = self._of_training.get(contender.method, set(contender.options))
+        options = {name: contender.options[name] for name in contender.options if name in names}
+        return (contender.method, f"{contender.preset} {sorted(options.items())!r}", used)
 
     def _training_clip(self, index: int) -> TrainingClip:
         clip = self._clips[index]

@@ -216,10 +216,25 @@ class _Run:
             truth.jerk_kmps3,
             truth.movement(),
         )
-        estimates = [self._estimate(one, performance, excluded) for one in self.contenders]
+        hidden = self._hidden_from_all(index, excluded)
+        estimates = [
+            self._estimate(one, performance, hidden if one.knows_all_clips else excluded)
+            for one in self.contenders
+        ]
         for estimate in estimates + self._baselines(performance, truth.positions, excluded):
             test.results[estimate.label] = truth.compared(estimate)
         return test
+
+    def _hidden_from_all(self, test: int, excluded: Sequence[int]) -> list[int]:
+        """Returns what is hidden from a contender that knows all clips but the tests.
+
+        The performer's other clips, too, where the training clips are of others.
+        """
+        hidden, actor = set(excluded), self.clips[test].actor
+        is_known = any(
+            clip.actor == actor for index, clip in enumerate(self.clips) if index not in hidden
+        )
+        return excluded_clips(self.clips, test, 1 if is_known else 3)
 
     def _estimate(
         self, contender: Contender, performance: Performance, excluded: Sequence[int]

@@ -12,49 +12,67 @@
 namespace sparse_mocap::eom2014 {
 namespace {
 
-// The stages of the paper, and what is beside them.
-std::vector<Experiment::Variant> stages() {
-  const OptionValues one{{"window_frames", "0"}}, many{};
-  const auto with = [](OptionValues options, const char* mapping) {
-    options["mapping"] = mapping;
-    return options;
-  };
+// The stages of the paper, and what is beside them, from one phone.
+std::vector<Experiment::Variant> stages(const char* site) {
+  OptionValues many;
+  if (find_site(site) != find_site("left_ankle")) many["site"] = site;
+  OptionValues one = many;
+  one["window_frames"] = "0";
   const std::vector<Sensor> phone{
-      {find_site("left_ankle"), 1.0, Channel::specific_force | Channel::angular_velocity}};
-  return {{"linear", with(one, "direct_linear"), phone},
-          {"linear, latent", with(one, "linear"), phone},
-          {"perceptron", with(one, "perceptron"), phone},
-          {"perceptron a phase", with(one, "phases"), phone},
-          {"perceptron a phase, windows", with(many, "phases"), phone},
-          {"Gaussian process, windows", with(many, "gaussian_process"), phone},
-          {"path", with(many, "path"), phone}};
+      {find_site(site), 1.0, Channel::specific_force | Channel::angular_velocity}};
+  const auto best = [&](const char* label, OptionValues options, const char* mapping) {
+    options["mapping"] = mapping;
+    return Experiment::Variant{label, options, phone, "", true};
+  };
+  return {best("linear", one, "direct_linear"),
+          best("linear, latent", one, "linear"),
+          best("perceptron", one, "perceptron"),
+          best("perceptron a phase", one, "phases"),
+          best("perceptron, windows", many, "perceptron"),
+          best("perceptron a phase, windows", many, "phases"),
+          best("Gaussian process, windows", many, "gaussian_process"),
+          best("path", many, "path"),
+          {"path, live", many, phone},
+          {"path_regression", {}, phone, "path_regression", true},
+          {"path_regression, all clips", {}, phone, "path_regression", true, true}};
 }
 
-Experiment experiment(const char* name, const char* help, std::vector<Experiment::ClipPair> pairs) {
-  return {name, help, stages(), std::move(pairs), Experiment::Error::position_cm};
+Experiment experiment(const char* name, const char* help, std::vector<Experiment::ClipPair> pairs,
+                      const char* site = "left_ankle") {
+  return {name, help, stages(site), std::move(pairs), Experiment::Error::position_cm};
 }
 
-// On walks, runs and jumps of the CMU database; each model knows one clip.
+std::vector<Experiment::ClipPair> walks_of_a_performer() {
+  return {{"02_01.bvh", "02_02.bvh"},
+          {"07_01.bvh", "07_0[26-9].bvh"},
+          {"08_01.bvh", "08_0[369].bvh"},
+          {"16_15.bvh", "16_[15][68].bvh"},
+          {"35_02.bvh", "35_0*.bvh"}};
+}
+
+// On walks, runs, jumps and hops of the CMU database; each model knows one clip.
 std::vector<Experiment> experiments() {
-  return {experiment("one_walk_same_performer",
-                     "Figures 8 and 9, table 1: other walks of the performer.",
-                     {{"02_01.bvh", "02_02.bvh"},
-                      {"07_01.bvh", "07_0[26-9].bvh"},
-                      {"08_01.bvh", "08_0[369].bvh"},
-                      {"16_15.bvh", "16_[15][68].bvh"},
-                      {"35_02.bvh", "35_0*.bvh"}}),
-          experiment("one_walk_other_performer",
-                     "Figures 8 and 9, table 1: walks of others, as in figure 10.",
-                     {{"02_01.bvh", "07_01.bvh"},
-                      {"07_01.bvh", "08_01.bvh"},
-                      {"08_01.bvh", "16_15.bvh"},
-                      {"16_15.bvh", "35_01.bvh"},
-                      {"35_02.bvh", "02_01.bvh"},
-                      {"07_01.bvh", "16_58.bvh"},
-                      {"16_15.bvh", "08_03.bvh"},
-                      {"35_02.bvh", "07_06.bvh"}}),
-          experiment("one_run", "Figure 10: other runs of the performer.",
-                     {{"35_17.bvh", "35_1[89].bvh"}, {"35_17.bvh", "35_2[0-6].bvh"}})};
+  return {
+      experiment("one_walk_same_performer",
+                 "Figures 8 and 9, table 1: other walks of the performer.", walks_of_a_performer()),
+      experiment("one_walk_other_performer",
+                 "Figures 8 and 9, table 1: walks of others, as in figure 10.",
+                 {{"02_01.bvh", "07_01.bvh"},
+                  {"07_01.bvh", "08_01.bvh"},
+                  {"08_01.bvh", "16_15.bvh"},
+                  {"16_15.bvh", "35_01.bvh"},
+                  {"35_02.bvh", "02_01.bvh"},
+                  {"07_01.bvh", "16_58.bvh"},
+                  {"16_15.bvh", "08_03.bvh"},
+                  {"35_02.bvh", "07_06.bvh"}}),
+      experiment("one_run", "Figure 10: other runs of the performer.",
+                 {{"35_17.bvh", "35_1[89].bvh"}, {"35_17.bvh", "35_2[0-6].bvh"}}),
+      experiment("one_jump", "Figure 10: jumps and hops, each from the other clip of them.",
+                 {{"49_02.bvh", "49_03.bvh"}, {"49_03.bvh", "49_02.bvh"}}),
+      experiment("walk_from_a_wrist", "Other walks of the performer, the phone at a wrist.",
+                 walks_of_a_performer(), "left_wrist"),
+      experiment("walk_from_the_pelvis", "Other walks of the performer, the phone at the pelvis.",
+                 walks_of_a_performer(), "pelvis")};
 }
 
 Model train(const MethodSettings& settings, const std::vector<TrainingClip>& clips,

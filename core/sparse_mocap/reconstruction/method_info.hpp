@@ -30,6 +30,9 @@ struct Experiment {
     std::string label;
     OptionValues options;
     std::vector<Sensor> sensors{};  // with the channels that it gets; empty: the evaluation's own
+    std::string method{};           // empty: the one whose experiment it is
+    bool in_best_quality = false;   // of methods that work live as well
+    bool knows_all_clips = false;   // a database of all but the tests, not of training clips alone
   };
   struct ClipPair {  // names of clips, as patterns
     std::string training, test;

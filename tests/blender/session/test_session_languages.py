@@ -23,6 +23,7 @@ from blender_addon.session import (
     pose_guide,
     reconstruct,
     sensors,
+    training,
 )
 from blender_addon.session.free_motions import FREE_MOTIONS
 from blender_addon.session.names import shown_site
@@ -31,13 +32,10 @@ ADDON = Path(__file__).resolve().parents[3] / "blender_addon"
 LANGUAGES = {"german": german.TEXTS}
 
 SHOWN = [*sorted((ADDON / "ui").glob("*.py")), ADDON / "scene/prompt.py"]
-SHOWN += [
-    ADDON / "scene/pose_guide.py",
-    ADDON / "scene/sensor_graph.py",
-    ADDON / "ops/sensor_table.py",
-]
+SHOWN += [ADDON / f"scene/{name}.py" for name in ("latent_view", "pose_guide", "sensor_graph")]
+SHOWN += [ADDON / "ops/sensor_table.py"]
 DEFINED = [*sorted((ADDON / "ops").glob("*.py")), ADDON / "scene/settings.py"]
-DEFINED += [ADDON / f"scene/{name}.py" for name in ("preferences", "clips", "mapping")]
+DEFINED += [ADDON / f"scene/{name}.py" for name in ("preferences", "clips", "mapping", "training")]
 
 NOT_TEXT = re.compile(r"[A-Z0-9_]+|SPARSEMOCAP\w+|sparse_mocap.*|[a-z_]+(\.[a-z_]+)+|.{0,2}")
 IGNORED = {
@@ -101,6 +99,7 @@ def known_texts() -> list[str]:
     advice = [reconstruct.advice_for(match, is_guess=False) for match in ("poor", "fair")]
     jobs = [database.BUILDING, demo.MAKING, demo.TRYING, imported.IMPORTING, bake.PLACING_AGAIN]
     jobs += [reconstruct.RECONSTRUCTING, sensors.STARTING_LIVE, sensors.SAVING_TAKE]
+    jobs += [training.TRAINING]
     return [
         *advice,
         reconstruct.advice_for("poor", is_guess=True),
@@ -111,6 +110,8 @@ def known_texts() -> list[str]:
         *pose_guide.POSE_TEXTS.values(),
         *(pose_guide.READY, pose_guide.HOLD, pose_guide.MISSED),
         *mapping.LABELS.values(),
+        *(f"Choose a {what} first" for what in ("motion database", "take")),
+        "Train or open a model first",
         *(shown_site(site) for site in sparse_mocap.site_names()),
         *(found.terms for found in FREE_MOTIONS),
         *(state.value.capitalize() for state in State),
