@@ -161,8 +161,11 @@ def _values(group) -> dict[str, object]:
     found = {}
     for name in group.bl_rna.properties.keys():  # noqa: SIM118 - not a dict
         value = None if name == "rna_type" else getattr(group, name)
-        is_collection = isinstance(value, bpy.types.bpy_prop_collection)
-        found[name] = [_values(item) for item in value] if is_collection else value
+        if isinstance(value, bpy.types.bpy_prop_collection):
+            value = [_values(item) for item in value]
+        elif isinstance(value, bpy.types.PropertyGroup):
+            value = _values(value)
+        found[name] = value
     return found
 
 
