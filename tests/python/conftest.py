@@ -22,7 +22,8 @@ from sparse_mocap.demo_motions import generate_library, generate_performance
 FOR_DEVELOPERS = [
     "accuracy", "demo", "test_accuracy_table.py", "test_corpus.py", "test_fourth_method.py",
     "test_house_rules.py", "test_layers.py", "test_macos_modules.py", "test_mutants.py",
-    "test_packaged_modules.py", "test_packaging.py", "test_public_names.py", "test_readme.py",
+    "test_packaged_modules.py", "test_packaging.py", "test_phone_table.py", "test_public_names.py",
+    "test_readme.py",
     "test_tested_modules.py", "test_words.py",
 ]  # fmt: skip
 """What tests the sources and the tools for them, which need Linux."""

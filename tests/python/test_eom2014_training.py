@@ -33,9 +33,11 @@ from sparse_mocap import (
 )
 from sparse_mocap.capture.session import FOLDER_VARIABLE
 from sparse_mocap.evaluation import frame_errors, joint_errors
+from sparse_mocap.evaluation.movement import headings_rad
 from sparse_mocap.latent_space import PHASES, latent_maps
 from sparse_mocap.positions import read_positions
 from sparse_mocap.reconstruction import reconstruct
+from sparse_mocap.rotations import product
 from sparse_mocap.take import SensorRecord, Take
 from sparse_mocap.training import (
     database_clips,
@@ -278,3 +280,42 @@ def test_live_poses_follow_after_the_lag(model: Model, walk: Motion) -> None:
     assert found.latency_s == pytest.approx(0.2 + 0.0345, abs=0.002)
     assert error_cm(np.asarray(found.motion.joint_positions("heading")), walk) < 3.0
     assert any("misfit of the readings" in note for note in found.notes)
+
+
+def test_a_phone_that_tells_g_is_understood_live(model: Model, walk: Motion) -> None:
+    """The first second passes until it is noticed."""
+    record = simulated(walk, [SITE], 100.0).sensors[SITE]
+    told = Take({SITE: SensorRecord(record.times_s, -record.specific_force / 9.80665,
+                                    record.angular_velocity)})  # fmt: skip
+    found = reconstruct(told, method="eom2014", model=model)
+    assert any("the sign of an iPhone" in note for note in found.notes)
+    positions = np.asarray(found.motion.joint_positions("heading"))
+    late = walk.trimmed(round(2.0 / walk.frame_time_s), walk.num_frames)
+    assert error_cm(positions[60:], late) < 4.0
+
+
+def test_the_body_turns_as_the_performer_does(model: Model, walk: Motion) -> None:
+    """The model's clip goes straight on; the performer walks a curve."""
+    yaw = 0.5 * walk.frame_time_s * np.arange(walk.num_frames)
+    zero = np.zeros_like(yaw)
+    turn = np.stack([np.cos(yaw / 2), zero, np.sin(yaw / 2), zero], axis=1)
+    rotations, places = np.array(walk.rotations), np.array(walk.root_positions)
+    rotations[:, 0] = product(turn, rotations[:, 0])
+    x, z = places[:, 0].copy(), places[:, 2].copy()
+    places[:, 0] = np.cos(yaw) * x + np.sin(yaw) * z
+    places[:, 2] = -np.sin(yaw) * x + np.cos(yaw) * z
+    curved = Motion(walk.skeleton, walk.frame_time_s, places, rotations)
+    wanted = heading_change_rad(curved)
+    assert wanted > 1.0
+    for best_quality in (True, False):
+        take = simulated(curved, [SITE], 100.0)
+        found = reconstruct(take, method="eom2014", model=model, best_quality=best_quality)
+        assert heading_change_rad(found.motion) == pytest.approx(wanted, abs=0.2 * wanted)
+
+
+def heading_change_rad(motion: Motion) -> float:
+    names = list(motion.skeleton.names)
+    ends = np.asarray(motion.joint_positions("world"))
+    left, right = (ends[:, names.index(name)] for name in ("lhipjoint", "rhipjoint"))
+    yaw = np.unwrap(headings_rad(left, right))
+    return float(yaw[-1] - yaw[0])

@@ -273,7 +273,10 @@ def _show(title: str, found: Evaluation) -> None:
     print_table(_summary(found))
     parts = {
         method: found.part_errors_cm(method)
-        | {"frames under 5 cm (%)": 100.0 * found.share_of_close_frames(method)}
+        | {
+            "frames under 5 cm (%)": 100.0 * found.share_of_close_frames(method),
+            "clips always under 5 cm (%)": 100.0 * found.share_of_close_clips(method),
+        }
         for method in found.methods
     }
     classes = {method: found.class_errors_cm(method) for method in found.methods}

@@ -123,6 +123,12 @@ class Evaluation:
         """Returns the share of all tests' frames with an error of less than 5 cm."""
         return float(np.mean(self.frame_errors_cm(method) < CLOSE_CM))
 
+    def share_of_close_clips(self, method: str) -> float:
+        """Returns the share of tests of which every frame has an error of less than 5 cm."""
+        return float(
+            np.mean([test.results[method].frame_errors_cm.max() < CLOSE_CM for test in self.tests])
+        )
+
     def class_errors_cm(self, method: str) -> dict[str, float]:
         """Returns the error in each class, a mean over its tests."""
         classes: dict[str, list[float]] = {}
@@ -254,6 +260,7 @@ class Evaluation:
             "warnings": self.warnings(method),
             "part_errors_cm": self.part_errors_cm(method),
             "share_of_frames_under_5_cm": self.share_of_close_frames(method),
+            "share_of_clips_under_5_cm": self.share_of_close_clips(method),
             "class_errors_cm": self.class_errors_cm(method),
             "classes": {name: self.of_class(name).moving(method) for name in self.classes},
             "joint_errors_cm": self.joint_errors_cm(method),
