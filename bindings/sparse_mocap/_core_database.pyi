@@ -72,8 +72,11 @@ class MotionDatabase:
         Names: angles, positions, extremities, root_motion, contacts, specific_force_pivot,
         specific_force_end, angular_velocity, up.
         """
-    def clip_motion(self, index: int) -> Motion:
-        """The clip as a motion on the standard skeleton, starting at the origin."""
+    def clip_motion(self, index: int, *, extremities: bool = False) -> Motion:
+        """The clip as a motion on the standard skeleton, starting at the origin.
+
+        extremities: with feet, toes and hands, which are relaxed in clips whose files have none.
+        """
     model_names: list[str]
     def model(self, method: str) -> Model:
         """What a method learned and keeps here, see store_model. Raises FormatError."""

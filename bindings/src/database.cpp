@@ -152,8 +152,15 @@ void bind_content(DatabaseClass& database) {
 
 Names: angles, positions, extremities, root_motion, contacts, specific_force_pivot, specific_force_end,
 angular_velocity, up.)doc")
-      .def("clip_motion", &clip_motion, py::arg("index"),
-           "The clip as a motion on the standard skeleton, starting at the origin.")
+      .def(
+          "clip_motion",
+          [](const MotionDatabase& d, int index, bool extremities) {
+            return extremities ? clip_motion_with_extremities(d, index) : clip_motion(d, index);
+          },
+          py::arg("index"), py::kw_only(), py::arg("extremities") = false,
+          R"doc(The clip as a motion on the standard skeleton, starting at the origin.
+
+extremities: with feet, toes and hands, which are relaxed in clips whose files have none.)doc")
       .def_property_readonly("model_names", &MotionDatabase::model_names,
                              "The methods whose models it holds.")
       .def(

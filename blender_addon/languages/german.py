@@ -5,8 +5,9 @@ from __future__ import annotations
 
 from .german_labels import LABELS
 from .german_models import MODELS
+from .german_reports import REPORTS
 from .german_sentences import SENTENCES
 from .german_tooltips import TOOLTIPS
 
-TEXTS: dict[str, str] = {**LABELS, **SENTENCES, **TOOLTIPS, **MODELS}
+TEXTS: dict[str, str] = {**LABELS, **SENTENCES, **TOOLTIPS, **MODELS, **REPORTS}
 """What to show for each English text; words in {braces} are filled in."""

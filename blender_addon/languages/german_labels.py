@@ -144,6 +144,7 @@ LABELS = {
     "Value": "Wert",
     "Quality": "Qualität",
     "Live": "Live",
+    "Next Poor Part": "Nächster schlechter Teil",
     "Best": "Beste",
     "Best quality": "Beste Qualität",
     "Character": "Charakter",

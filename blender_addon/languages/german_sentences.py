@@ -39,9 +39,20 @@ SENTENCES = {
     "Opening the model": "Das Modell wird geöffnet",
     "One phone": "Ein Telefon",
     "{first} to {last}": "{first} bis {last}",
-    "The motion database has nothing like this take: add clips of such movements to it": (
-        "Die Bewegungsdatenbank enthält nichts Ähnliches: Clips solcher Bewegungen hinzufügen"
+    "The motion database has nothing like this take: add clips of such movements, calibrate the "
+    "sensors, or check where they are worn": (
+        "Die Bewegungsdatenbank enthält nichts Ähnliches: Clips solcher Bewegungen hinzufügen, die "
+        "Sensoren kalibrieren oder prüfen, wo sie getragen werden"
     ),
+    "Several movements of the motion database fit the sensors alike: more sensors, sensors with "
+    "gyroscopes, or clips of this performer help": (
+        "Mehrere Bewegungen der Datenbank passen gleich gut zu den Sensoren: mehr Sensoren, solche "
+        "mit Gyroskopen oder Clips dieses Darstellers helfen"
+    ),
+    "Check the sensor at {site}: it fits far worse than the others": (
+        "Den Sensor prüfen, {site}: er passt viel schlechter als die anderen"
+    ),
+    "Poor: {parts} s": "Schlecht: {parts} s",
     "Poor match: calibrate the sensors, check where they are worn, "
     "or add clips of such movements to the database": (
         "Schlechte Übereinstimmung: die Sensoren kalibrieren, prüfen, wo sie getragen werden, oder "

@@ -125,6 +125,9 @@ TOOLTIPS = {
     ),
     "Use the default value of this option again": "Wieder den üblichen Wert dieser Option nehmen",
     "The value to use; press X for the default": "Der Wert; X stellt den üblichen wieder her",
+    "Go to the frame where the next part with a poor match begins": (
+        "Zum Bild gehen, bei dem der nächste Teil mit schlechter Übereinstimmung beginnt"
+    ),
     "Use the whole take for every frame": "Für jedes Bild die ganze Aufnahme nutzen",
     "Use the whole take for every frame: more accurate and smoother, but slower. "
     "Off: the same as in a live preview": (

@@ -15,9 +15,11 @@ from ..scene.nla import push_to_nla
 from ..scene.performance import facts_of, perform_steps, performed_action, replace_actions
 from ..scene.settings import settings_of
 from ..scene.targets import own_figure, placement_of
+from ..scene.translations import tr_line
 from ..session.bake import PlacedTake, place_job
 from ..session.errors import InputError, one_line
 from ..session.job import Job
+from ..session.match import poor_parts
 from ..session.reconstruct import kept
 from ..session.steps import Steps
 from .job_operator import JobOperator
@@ -89,9 +91,9 @@ class _ActionOperator:
         try:
             message = self.act(context)
         except Exception as error:
-            self.report({"ERROR"}, one_line(error))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
-        self.report({"INFO"}, message)
+        self.report({"INFO"}, tr_line(message))
         return {"FINISHED"}
 
 
@@ -154,8 +156,31 @@ class SPARSEMOCAP_OT_stop_comparing(_ActionOperator, Operator):
         return "The ghost is removed"
 
 
+class SPARSEMOCAP_OT_next_poor_part(_ActionOperator, Operator):
+    """Go to where the next part with a poor match begins."""
+
+    bl_idname = "sparse_mocap.next_poor_part"
+    bl_label = "Next Poor Part"
+    bl_description = "Go to the frame where the next part with a poor match begins"
+    bl_options = {"INTERNAL"}
+
+    def act(self, context: Context) -> str:
+        """Move the playhead; after the last part comes the first."""
+        facts = facts_of(_action(context))
+        parts = poor_parts(facts.seconds.split()) if facts is not None else []
+        if facts is None or not parts:
+            raise InputError("No part of this take has a poor match")
+        scene = context.scene
+        frames = [round(facts.frame_at(begin)) for begin, _ in parts]
+        number = next((i for i, frame in enumerate(frames) if frame > scene.frame_current), 0)
+        scene.frame_set(frames[number])
+        begin_s, end_s = parts[number]
+        return f"Poor from {begin_s} to {end_s} s of the take"
+
+
 CLASSES = (
     SPARSEMOCAP_OT_update_action,
+    SPARSEMOCAP_OT_next_poor_part,
     SPARSEMOCAP_OT_push_to_nla,
     SPARSEMOCAP_OT_compare,
     SPARSEMOCAP_OT_stop_comparing,

@@ -8,6 +8,7 @@ from bpy.types import Context, Event, Operator
 
 from ..scene import prompt
 from ..scene.settings import settings_of
+from ..scene.translations import tr_line
 from ..session import live
 from ..session.calibrating import Calibrated, calibrating_job, calibrations
 from ..session.job import Job
@@ -46,7 +47,7 @@ class SPARSEMOCAP_OT_calibrate_sensors(JobOperator, Operator):
         yield 0.0
         settings_of(context.scene).calibration = result.path
         for note in result.notes:
-            self.report({"WARNING"}, note)
+            self.report({"WARNING"}, tr_line(note))
         session = live.current()
         if session is not None:
             session.use_calibration(calibrations.get(result.path))

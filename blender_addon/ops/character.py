@@ -8,6 +8,7 @@ from ..scene.armature import is_ours
 from ..scene.body import new_body
 from ..scene.live import followed
 from ..scene.settings import settings_of
+from ..scene.translations import tr_line
 from ..session.errors import one_line
 
 
@@ -31,10 +32,10 @@ class SPARSEMOCAP_OT_add_body(Operator):
         try:
             body = new_body(context, armature)
         except Exception as error:
-            self.report({"ERROR"}, one_line(error))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
         armature.show_in_front = False
-        self.report({"INFO"}, f'"{body.name}" moves with "{armature.name}"')
+        self.report({"INFO"}, tr_line(f'"{body.name}" moves with "{armature.name}"'))
         return {"FINISHED"}
 
 
@@ -56,7 +57,7 @@ class SPARSEMOCAP_OT_toggle_overlay(Operator):
         try:
             overlay.toggle(context, followed() or target or context.view_layer.objects.active)
         except Exception as error:
-            self.report({"ERROR"}, one_line(error))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
         return {"FINISHED"}
 
@@ -78,7 +79,7 @@ class SPARSEMOCAP_OT_toggle_sensor_graph(Operator):
         try:
             sensor_graph.toggle(context)
         except Exception as error:
-            self.report({"ERROR"}, one_line(error))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
         return {"FINISHED"}
 

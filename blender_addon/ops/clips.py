@@ -11,6 +11,7 @@ from ..scene import compat
 from ..scene.clips import clip_list, fill
 from ..scene.preview import first_frame, fit_range, keep, show_clip
 from ..scene.settings import settings_of
+from ..scene.translations import tr_line
 from ..session.database import databases
 from ..session.errors import InputError, one_line
 
@@ -31,9 +32,9 @@ class _ClipOperator:
                 raise InputError("A render is running: wait until it has finished")
             message = self.do(context)
         except Exception as error:
-            self.report({"ERROR"}, one_line(error))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
-        self.report({"INFO"}, message)
+        self.report({"INFO"}, tr_line(message))
         return {"FINISHED"}
 
 
@@ -70,7 +71,8 @@ class SPARSEMOCAP_OT_preview_clip(_ClipOperator, Operator):
         rows = database.clips.rows
         if index >= len(rows):
             raise InputError(f"There is no clip {index}: the motion database has {len(rows)} clips")
-        armature = show_clip(context, database.motions.clip_motion(index), rows[index].label)
+        motion = database.motions.clip_motion(index, extremities=True)
+        armature = show_clip(context, motion, rows[index].label)
         clip_list(context).index = index
         return f'Previewing "{rows[index].label}" on "{armature.name}"'
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from bpy.types import Context, Operator
 
+from ..scene.translations import tr_line
 from ..session import core
 from ..session.installation import Problem
 from ..session.installation_report import report
@@ -38,7 +39,7 @@ class SPARSEMOCAP_OT_copy_report(Operator):
             core.searched_folders(),
             tuple(facts),
         )
-        self.report({"INFO"}, "Copied the report")
+        self.report({"INFO"}, tr_line("Copied the report"))
         return {"FINISHED"}
 
 

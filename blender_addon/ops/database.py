@@ -9,6 +9,7 @@ from bpy.types import Context, Event, Operator, OperatorFileListElement
 
 from ..scene.animated import AnimatedArmature, animated_armatures, sampled_steps
 from ..scene.settings import settings_of
+from ..scene.translations import tr_line
 from ..session.database import (
     BUILDING,
     SUFFIX,
@@ -51,7 +52,7 @@ class SPARSEMOCAP_OT_open_database(Operator):
         try:
             databases.get(bpy.path.abspath(self.filepath))
         except Exception as error:
-            self.report({"ERROR"}, one_line(error))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
         settings_of(context.scene).database = self.filepath
         return {"FINISHED"}
@@ -81,7 +82,7 @@ class SPARSEMOCAP_OT_choose_output(Operator):
         try:
             path = checked_output(bpy.path.abspath(self.filepath))
         except Exception as error:
-            self.report({"ERROR"}, one_line(error))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
         settings_of(context.scene).output = path
         return {"FINISHED"}
@@ -272,14 +273,16 @@ class SPARSEMOCAP_OT_show_build_report(Operator):
     def execute(self, context: Context) -> set[str]:
         """Write the text and copy it to the clipboard."""
         if not last_build:
-            self.report({"ERROR"}, "There is no report yet: build a motion database first")
+            self.report({"ERROR"}, tr_line("There is no report yet: build a motion database first"))
             return {"CANCELLED"}
         text = bpy.data.texts.get(REPORT) or bpy.data.texts.new(REPORT)
         text.clear()
         text.write(last_build[0].text())
         if not bpy.app.background:
             context.window_manager.clipboard = text.as_string()
-        self.report({"INFO"}, f'The report is in the text "{text.name}" and on the clipboard')
+        self.report(
+            {"INFO"}, tr_line(f'The report is in the text "{text.name}" and on the clipboard')
+        )
         return {"FINISHED"}
 
 

@@ -11,6 +11,7 @@ from bpy.types import Context, Event, Operator, OperatorFileListElement
 
 from ..scene.imported import import_steps
 from ..scene.mapping import show_mapping
+from ..scene.translations import tr_line
 from ..session.imported import ACCLAIM, BVH, ImportOptions, Loaded, file_summaries, import_job
 from ..session.job import Job
 from ..session.mapping import last_mapped
@@ -116,10 +117,10 @@ class ImportOperator(JobOperator):
         warnings = [f"Not imported: {problem}" for problem in result.problems]
         warnings += [warning for motion in result.motions for warning in motion.warnings]
         for warning in warnings[:_MOST_WARNINGS]:
-            self.report({"WARNING"}, warning)
+            self.report({"WARNING"}, tr_line(warning))
         more = len(warnings) - _MOST_WARNINGS
         if more > 0:
-            self.report({"WARNING"}, f"and {more} more warnings")
+            self.report({"WARNING"}, tr_line(f"and {more} more warnings"))
         if len(made) > 1:
             left_out = f", {len(result.problems)} left out" if result.problems else ""
             return f"Imported {len(made)} files, each on its own armature{left_out}"

@@ -12,6 +12,7 @@ from bpy.types import Context, Event, Operator
 
 from ..scene import compat
 from ..scene.settings import settings_of
+from ..scene.translations import tr_line
 from ..session import job as jobs
 from ..session.errors import InputError, log, one_line
 from ..session.job import Cancelled, Job
@@ -151,18 +152,19 @@ class JobOperator:
 
     def _finished(self, message: str) -> set[str]:
         log.info("%s", message)
-        self.report({"INFO"}, message)
+        self.report({"INFO"}, tr_line(message))
         return {"FINISHED"}
 
     def _failed(self, error: Exception) -> set[str]:
         if isinstance(error, Cancelled):
-            self.report({"INFO"}, "Cancelled")
+            self.report({"INFO"}, tr_line("Cancelled"))
         elif isinstance(error, ReferenceError):
             self.report(
-                {"ERROR"}, "The scene changed in the meantime, so nothing was done: try again"
+                {"ERROR"},
+                tr_line("The scene changed in the meantime, so nothing was done: try again"),
             )
         else:
-            self.report({"ERROR"}, one_line(error))
+            self.report({"ERROR"}, tr_line(one_line(error)))
         return {"CANCELLED"}
 
 

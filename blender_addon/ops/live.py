@@ -19,6 +19,7 @@ from ..scene.performance import extend_scene, perform_steps
 from ..scene.settings import scene_choice, settings_of
 from ..scene.takes import add_take
 from ..scene.targets import chosen_armatures, own_figure, placement_of
+from ..scene.translations import tr_line
 from ..session import live, sensors
 from ..session.errors import InputError
 from ..session.job import Job
@@ -56,10 +57,10 @@ class NowOperator:
         try:
             message = self.act(context)
         except Exception as error:
-            self.report({"ERROR"}, one_line_of(error))
+            self.report({"ERROR"}, tr_line(one_line_of(error)))
             return {"CANCELLED"}
         if message:
-            self.report({"INFO"}, message)
+            self.report({"INFO"}, tr_line(message))
         return {"FINISHED"}
 
 
@@ -261,12 +262,12 @@ class SPARSEMOCAP_OT_stop_take(JobOperator, Operator):
 
     def apply(self, context: Context, result: SavedTake) -> Steps[str]:
         """Select the take, and put its action on the armature of the live preview, if any."""
-        match = result.placed.performance.match if result.placed is not None else ""
+        match = result.placed.performance.match.label if result.placed is not None else ""
         add_take(context.scene, result.path, takes.peek(result.path).value, match)
         for warning in result.warnings:
-            self.report({"WARNING"}, warning)
+            self.report({"WARNING"}, tr_line(warning))
         if result.placed is None:
-            self.report({"WARNING"}, f"Not reconstructed: {result.reason}")
+            self.report({"WARNING"}, tr_line(f"Not reconstructed: {result.reason}"))
             yield 1.0
             return f"Take saved as {result.path}"
         leave_live()

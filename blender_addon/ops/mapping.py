@@ -10,6 +10,7 @@ from bpy.types import Context, Event, Operator
 from ..scene.binding import rest_bones
 from ..scene.mapping import mapping_of, show_joints, show_mapping, shown_joints
 from ..scene.settings import settings_of
+from ..scene.translations import tr_line
 from ..session import mapping
 from ..session.character import still_motion
 from ..session.errors import InputError, one_line
@@ -31,9 +32,9 @@ class _MappingOperator:
         try:
             message = self.do(context)
         except Exception as error:
-            self.report({"ERROR"}, one_line(error))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
-        self.report({"INFO"}, message)
+        self.report({"INFO"}, tr_line(message))
         return {"FINISHED"}
 
 

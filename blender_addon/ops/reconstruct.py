@@ -12,9 +12,10 @@ from ..scene.performance import extend_scene, perform_steps
 from ..scene.settings import options_text, settings_of
 from ..scene.takes import take_of
 from ..scene.targets import chosen_armatures, held_warning, own_figure, placement_of
+from ..scene.translations import tr_line
 from ..session.bake import PlacedTake, placed
 from ..session.job import Job
-from ..session.methods import Items, choice_of, default_of, option_items
+from ..session.methods import Items, choice_of, default_of, has_best_quality, option_items
 from ..session.reconstruct import reconstruct_job
 from ..session.steps import Steps
 from .job_operator import JobOperator
@@ -60,7 +61,7 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
         model = bpy.path.abspath(settings.training.model)
         choice, renamed = choice_of(self.method, self.preset, self.options, model)
         if renamed:
-            self.report({"WARNING"}, renamed)
+            self.report({"WARNING"}, tr_line(renamed))
         armatures = chosen_armatures(context)
         if self.reuse_armature and not armatures:
             armatures = [reusable_armature(context)]
@@ -74,23 +75,23 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
             bpy.path.abspath(settings.take),
             bpy.path.abspath(settings.calibration),
             choice=choice,
-            best_quality=self.offline,
+            best_quality=self.offline and has_best_quality(choice.method),
             finish=lambda performance, progress: placed(performance, placement, progress),
         )
 
     def apply(self, context: Context, result: PlacedTake) -> Steps[str]:
         """Create one action for each character, or on the add-on's own figure."""
         performance = result.performance
-        if performance.is_guess:
+        if performance.match.is_guess:
             self.report(
                 {"WARNING"},
-                "The motion database has nothing like this take, so the motion is a guess",
+                tr_line("The motion database has nothing like this take, so the motion is a guess"),
             )
         for note in performance.notes:
             self.report({"INFO"}, note[:1].upper() + note[1:])
         for target in result.placement.targets:
             if target.held:
-                self.report({"WARNING"}, held_warning(target))
+                self.report({"WARNING"}, tr_line(held_warning(target)))
         leave_live()
         armature: Any = yield from perform_steps(
             context, result, bpy.data.objects.get(self._figure)
@@ -99,11 +100,11 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
             extend_scene(context, result)
         row = take_of(context.scene)
         if row is not None:
-            row.match = performance.match
+            row.match = performance.match.label
         action = armature.animation_data.action
         return (
             f'"{action.name}" on "{armature.name}": {performance.duration_s:.1f} s, '
-            f"sensors match: {performance.match}"
+            f"sensors match: {performance.match.label}"
         )
 
 

@@ -12,6 +12,7 @@ from bpy.types import Context, Event, Operator
 
 from ..scene import compat, prompt
 from ..scene.settings import settings_of
+from ..scene.translations import tr_line
 from ..session.live import answer_of, one_line_of
 from .live import connected
 
@@ -38,7 +39,7 @@ class SPARSEMOCAP_OT_record_or_stop(Operator):
         try:
             state = connected().state
         except Exception as error:
-            self.report({"ERROR"}, one_line_of(error))
+            self.report({"ERROR"}, tr_line(one_line_of(error)))
             return {"CANCELLED"}
         if state.recording is not None:
             bpy.ops.sparse_mocap.stop_take("INVOKE_DEFAULT", True)
@@ -56,7 +57,7 @@ class SPARSEMOCAP_OT_record_or_stop(Operator):
         """Record when the time has come; Esc leaves nothing."""
         if event.type == "ESC" and event.value == "PRESS":
             self._leave(context)
-            self.report({"INFO"}, "Nothing was recorded")
+            self.report({"INFO"}, tr_line("Nothing was recorded"))
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
@@ -78,12 +79,12 @@ class SPARSEMOCAP_OT_record_or_stop(Operator):
         try:
             answer_of(connected().record(), _ANSWER_S)
         except Exception as error:
-            self.report({"ERROR"}, one_line_of(error))
+            self.report({"ERROR"}, tr_line(one_line_of(error)))
             return {"CANCELLED"}
         if settings.record_plays:
             settings.start_frame = float(context.scene.frame_current)
             compat.play(context, is_wanted=True)
-        self.report({"INFO"}, "Recording")
+        self.report({"INFO"}, tr_line("Recording"))
         return {"FINISHED"}
 
     def _leave(self, context: Context) -> None:

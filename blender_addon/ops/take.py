@@ -9,6 +9,7 @@ from bpy.types import Context, Event, Operator
 
 from ..scene.settings import settings_of
 from ..scene.takes import add_take, find_takes, remove_take
+from ..scene.translations import tr_line
 from ..session.errors import one_line
 from ..session.new_files import takes_folder
 from ..session.take import SUFFIX, takes
@@ -35,11 +36,12 @@ class SPARSEMOCAP_OT_load_take(Operator):
         try:
             take = takes.get(bpy.path.abspath(self.filepath))
         except Exception as error:
-            self.report({"ERROR"}, one_line(error))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
         add_take(context.scene, self.filepath, take)
         self.report(
-            {"INFO"}, f"Loaded a take of {len(take.sensors)} sensors, {take.duration_s:.1f} s"
+            {"INFO"},
+            tr_line(f"Loaded a take of {len(take.sensors)} sensors, {take.duration_s:.1f} s"),
         )
         return {"FINISHED"}
 
@@ -60,7 +62,7 @@ class SPARSEMOCAP_OT_find_takes(Operator):
         if self.directory:
             folder = Path(bpy.path.abspath(self.directory))
         added = find_takes(context.scene, folder)
-        self.report({"INFO"}, f"{added} more takes in {folder}")
+        self.report({"INFO"}, tr_line(f"{added} more takes in {folder}"))
         return {"FINISHED"}
 
 
@@ -80,7 +82,7 @@ class SPARSEMOCAP_OT_remove_take(Operator):
 
     def execute(self, context: Context) -> set[str]:
         """Remove its row."""
-        self.report({"INFO"}, f'"{remove_take(context.scene)}" is not listed any more')
+        self.report({"INFO"}, tr_line(f'"{remove_take(context.scene)}" is not listed any more'))
         return {"FINISHED"}
 
 

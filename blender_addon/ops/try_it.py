@@ -84,7 +84,7 @@ class SPARSEMOCAP_OT_try_it(JobOperator, Operator):
         if not settings.database:
             settings.database = result.database
         settings.target = character
-        add_take(context.scene, result.take, result.loaded, result.performance.match)
+        add_take(context.scene, result.take, result.loaded, result.performance.match.label)
         extend_scene(context, take)
         overlay.show(context, bpy.data.objects[performer_name])
         armature.select_set(False)  # without outlines the body is seen better
@@ -93,7 +93,7 @@ class SPARSEMOCAP_OT_try_it(JobOperator, Operator):
         compat.play(context, is_wanted=True)
         return (
             f'"{armature.name}" does what four simulated sensors say '
-            f'that "{performer_name}" does; match: {result.performance.match}'
+            f'that "{performer_name}" does; match: {result.performance.match.label}'
         )
 
 

@@ -100,9 +100,9 @@ def bind(context: Context, armature: Object, limbs: str = "FK") -> Target:
         probe = Probe(context, armature)
         free = [name for limb in chosen if not limb.is_switched for name in limb.shown]
         with probe.at_rest(picked.properties, free):
-            found, response = probe.found(names, names), probe.response(mover)
+            found, [response] = probe.found(names, names), probe.responses([mover])
         with probe.at_rest(properties):
-            made = [_MadeLimb.of(probe, names, limb) for limb in chosen]
+            made = _made_limbs(probe, names, chosen)
     if abs(np.linalg.det(response)) < _STUCK:
         raise InputError(
             f'"{armature.name}": the bone "{mover}" cannot be moved, it is held by a constraint'
@@ -170,33 +170,41 @@ def _controls(
     ]
 
 
-def _placed(probe: Probe, names: list[str], name: str) -> Placed:
-    """An IK control; it follows a control by that one's index among the names."""
-    [found] = probe.found(names, [name])
-    response = probe.response(name)
-    if found.is_following:
-        response = rotation_of(found.T_armature_followed).T @ response
-    follows = found.follows if found.is_following and found.follows is not None else -1
-    return Placed(name, follows, found.T_armature_rest, found.T_followed_frame, response)
-
-
 @dataclass(frozen=True)
 class _MadeLimb:
     """A limb's IK controls; they follow controls by those ones' indices among the names."""
 
     limb: IkLimb
     target: Placed
-    pole: Placed | None
-    pole_angle_rad: float
+    pole: Placed | None = None
+    pole_angle_rad: float = 0.0
 
-    @classmethod
-    def of(cls, probe: Probe, names: list[str], limb: IkLimb) -> _MadeLimb:
-        """Ask the rig."""
-        target = _placed(probe, names, limb.target)
-        if not limb.pole:
-            return cls(limb, target, None, 0.0)
-        pole = _placed(probe, names, limb.pole)
-        return cls(limb, target, pole, probe.pole_angle_rad(limb))
+
+def _made_limbs(probe: Probe, names: list[str], limbs: list[IkLimb]) -> list[_MadeLimb]:
+    """Ask the rig, for all limbs at once: each question lets Blender evaluate the whole rig."""
+    if not limbs:
+        return []
+    with_pole = [limb for limb in limbs if limb.pole]
+    targets, poles = [limb.target for limb in limbs], [limb.pole for limb in with_pole]
+    found = probe.found(names, targets + poles)
+    target_responses = probe.responses(targets)
+    responses = target_responses + (probe.responses(poles) if poles else [])
+    placed = [_placed(*one) for one in zip(targets + poles, found, responses, strict=True)]
+    bent = [response for limb, response in zip(limbs, target_responses, strict=True) if limb.pole]
+    angles = probe.pole_angles_rad(with_pole, bent) if with_pole else []
+    made_poles = dict(zip(with_pole, zip(placed[len(limbs) :], angles, strict=True), strict=True))
+    return [
+        _MadeLimb(limb, target, *made_poles.get(limb, ()))
+        for limb, target in zip(limbs, placed[: len(limbs)], strict=True)
+    ]
+
+
+def _placed(name: str, found: Found, response: Floats) -> Placed:
+    """An IK control; it follows a control by that one's index among the names."""
+    if found.is_following:
+        response = rotation_of(found.T_armature_followed).T @ response
+    follows = found.follows if found.is_following and found.follows is not None else -1
+    return Placed(name, follows, found.T_armature_rest, found.T_followed_frame, response)
 
 
 def _limb(

@@ -44,12 +44,22 @@ class Facts:
     """The time in the take that is on the first frame."""
     frames_per_s: float = 0.0
     """0: unknown."""
+    seconds: str = ""
+    """Of the take: good, fair or poor for each, separated by spaces."""
+    advice: str = ""
+    """What would help."""
+    odd_sensor: str = ""
+    """The location of a sensor that fits far worse than the others."""
 
     def time_s(self, frame: float) -> float:
         """The time in the take at a frame of the scene; NaN where it is unknown."""
         if self.frames_per_s <= 0.0:
             return float("nan")
         return self.begin_s + (frame - self.first_frame) / self.frames_per_s
+
+    def frame_at(self, time_s: float) -> float:
+        """The frame of the scene at a time in the take."""
+        return self.first_frame + (time_s - self.begin_s) * self.frames_per_s
 
 
 def perform_steps(context: Context, take: PlacedTake, figure: Object | None) -> Steps[Object]:
@@ -95,14 +105,18 @@ def _reduction(take: PlacedTake, units_per_metre: float) -> Reduction | None:
 
 
 def _assign(context: Context, take: PlacedTake, made: list[tuple[str, Action]]) -> Object:
+    match = take.performance.match
     facts = Facts(
         take.performance.duration_s,
-        take.performance.match,
-        take.performance.is_guess,
+        match.label,
+        match.is_guess,
         take.performance.name,
         take.placement.start_frame,
         take.placement.part_s[0] if take.placement.part_s is not None else 0.0,
         take.placement.scene_rate_hz,
+        " ".join(match.seconds),
+        match.advice,
+        match.odd_sensor,
     )
     for name, action in made:
         action[_FACTS] = asdict(facts)

@@ -32,13 +32,12 @@ class RigPose:
         """Show a motion of one frame, that of the pose; the lowest foot so far is on the floor."""
         character = self.target.character
         on_rig = character.on_rig(motion)
-        moved = character.world(on_rig)
+        moved, legs = character.world_and_legs(on_rig)
         above = float(moved.above_floor_m[0])
         self._lowest_m = above if self._lowest_m is None else min(self._lowest_m, above)
         if lock.strength > 0.0 and character.has_feet:
-            legs = character.legs(on_rig)[0]
             floor_m = character.ankle_m + self._lowest_m
-            moved = self._feet.shown(moved, legs, pose.contacts, pose.time_s, lock, floor_m)
+            moved = self._feet.shown(moved, legs[0], pose.contacts, pose.time_s, lock, floor_m)
         for track in tracks_of(
             self.target.controls, moved.lifted(self.target.floor_m - self._lowest_m)
         ):

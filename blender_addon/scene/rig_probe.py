@@ -72,23 +72,32 @@ class Probe:
         tries = list(self._tries(followed, names))
         return [self._one_found(number, name, followed, tries) for number, name in enumerate(names)]
 
-    def response(self, name: str) -> Floats:
-        """(3, 3) how the bone moves in the armature with its location's three numbers."""
-        bone = self._armature.pose.bones[name]
-        step = self._armature.data.bones[name].length
+    def responses(self, names: list[str]) -> list[Floats]:
+        """For each bone (3, 3) how it moves in the armature with its location's three numbers.
+
+        All are moved at once, so none of them may move another one.
+        """
+        bones = [self._armature.pose.bones[name] for name in names]
+        steps = [self._armature.data.bones[name].length for name in names]
+        rest = self._places(names)
         columns = []
-        self._update()
-        rest = np.array(bone.matrix.translation)
         for axis in range(3):
-            bone.location = [step if axis == other else 0.0 for other in range(3)]
+            for bone, step in zip(bones, steps, strict=True):
+                bone.location = [step if axis == other else 0.0 for other in range(3)]
             self._update()
-            columns.append((np.array(bone.matrix.translation) - rest) / step)
-        bone.location = (0.0, 0.0, 0.0)
+            columns.append((self._places(names) - rest) / np.array(steps)[:, None])
+        for bone in bones:
+            bone.location = (0.0, 0.0, 0.0)
         self._update()
-        return np.array(columns).T
+        return list(np.stack(columns, axis=-1))
+
+    def _places(self, names: list[str]) -> Floats:
+        """(B, 3) where the bones begin in the armature."""
+        bones = self._armature.pose.bones
+        return np.array([bones[name].matrix.translation for name in names]).reshape(-1, 3)
 
     def _tries(self, followed: list[str], names: list[str]) -> Iterator[_Try]:
-        """The rest pose, then poses in which each bone that may be followed is turned."""
+        """The pose that there is, then poses in which each bone that may be followed is turned."""
         random = np.random.default_rng(1)
         pose = self._armature.pose
         for number in range(_POSES + 1):
@@ -97,7 +106,8 @@ class Probe:
                 if number > 0:
                     turned = Quaternion(Vector(axis), angle).to_matrix().to_4x4()
                     pose.bones[name].matrix_basis = turned
-            self._update()
+            if number > 0:
+                self._update()
             frames = [pose.bones[name] for name in names]
             yield _Try(
                 [unscaled(np.array(pose.bones[name].matrix)) for name in followed],
@@ -126,26 +136,33 @@ class Probe:
             unscaled(np.linalg.inv(T_followed) @ frames[0]),
         )
 
-    def pole_angle_rad(self, limb: IkLimb) -> float:
-        """How far the limb's plane is turned from its pole, about the line to the limb's end.
+    def pole_angles_rad(self, limbs: list[IkLimb], responses: list[Floats]) -> list[float]:
+        """How far each limb's plane is turned from its pole, about the line to the limb's end.
 
-        Blender aims an axis of the upper bone at the pole, not the bone below it.
+        Blender aims an axis of the upper bone at the pole, not the bone below it. responses: of the
+        limbs' targets; all limbs are bent at once.
         """
         pose = self._armature.pose
-        upper, lower, end = (pose.bones[name] for name in limb.shown)
-        target, pole = pose.bones[limb.target], pose.bones[limb.pole]
-        nearer = 0.25 * (upper.head - end.head)
-        response = Matrix(self.response(limb.target).tolist())
-        target.location = response.inverted() @ nearer
+        for limb, response in zip(limbs, responses, strict=True):
+            upper, _, end = (pose.bones[name] for name in limb.shown)
+            nearer = 0.25 * (upper.head - end.head)
+            pose.bones[limb.target].location = Matrix(response.tolist()).inverted() @ nearer
         self._update()
+        angles = [self._pole_angle_rad(limb) for limb in limbs]
+        for limb in limbs:
+            pose.bones[limb.target].location = (0.0, 0.0, 0.0)
+        self._update()
+        return angles
+
+    def _pole_angle_rad(self, limb: IkLimb) -> float:
+        """The angle in the pose that the limb has now, which must be bent."""
+        pose = self._armature.pose
+        upper, lower, end = (pose.bones[name] for name in limb.shown)
         along = (end.head - upper.head).normalized()
         middle = lower.head - upper.head
-        aim = pole.head - upper.head
+        aim = pose.bones[limb.pole].head - upper.head
         middle, aim = middle - along * along.dot(middle), aim - along * along.dot(aim)
-        target.location = (0.0, 0.0, 0.0)
-        angle = math.atan2(aim.cross(middle).dot(along), aim.dot(middle))
-        self._update()
-        return angle
+        return math.atan2(aim.cross(middle).dot(along), aim.dot(middle))
 
     def _constraints(self, bones: Iterable[str]) -> Iterator[Constraint]:
         for name in bones:

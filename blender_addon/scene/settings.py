@@ -178,6 +178,7 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
             "Use the whole take for every frame: more accurate and smoother, but slower. "
             "Off: the same as in a live preview"
         ),
+        default=True,
     )
     start_frame: FloatProperty(
         name="Start frame",

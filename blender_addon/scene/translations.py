@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import re
+
 import bpy
 
-from ..languages import german
+from ..languages import german, german_reports
 
 _ADDON = __package__.rpartition(".")[0]
 _CONTEXTS = ("*", "Operator")
@@ -15,6 +17,46 @@ _LOCALES = ("de", "de_DE")  # as Blender calls it before and since 4.0, or the o
 def tr(text: str) -> str:
     """The text in the language of Blender's interface, or as it is."""
     return str(bpy.app.translations.pgettext_iface(text))
+
+
+def tr_line(line: str) -> str:
+    """A line of an operator or a session in the language of Blender's interface, or as it is.
+
+    Such lines are made where nothing knows of Blender, with names and numbers filled in.
+    """
+    said = tr(line)
+    if said != line:
+        return said
+    for template, pattern in _TEMPLATES:
+        found = pattern.fullmatch(line)
+        if found is not None and (said := tr(template)) != template:
+            filled = found.groupdict()
+            filled |= {name: tr_line(text) for name, text in filled.items() if name in _OUR_WORDS}
+            return said.format(**filled)
+    return line
+
+
+_OUR_WORDS = {"kind", "job", "match", "reason"}
+"""What is filled in that is ours to translate, unlike the names of objects and files."""
+
+
+def _pattern(template: str) -> re.Pattern[str]:
+    """What lines look like that are made from the template."""
+    parts = re.split(r"\{(\w+)\}", template)
+    parts[::2] = [re.escape(text) for text in parts[::2]]
+    parts[1::2] = [f"(?P<{name}>.+?)" for name in parts[1::2]]
+    return re.compile("".join(parts))
+
+
+def _num_literal(template: str) -> int:
+    return len(re.sub(r"\{\w+\}", "", template))
+
+
+_TEMPLATES = [
+    (template, _pattern(template))
+    for template in sorted(german_reports.REPORTS, key=_num_literal, reverse=True)
+    if "{" in template
+]
 
 
 def register() -> None:

@@ -110,6 +110,7 @@ class Character:
         self._turned = [names.index(name) for name in self.turned]
         self._pivots = np.array([bone.head for bone in body])
         self._thighs = [names.index(self.joints[joint]) for joint in _THIGHS]
+        self._knees = [names.index(self.joints[shank]) for shank in _SHANKS]
         self._feet = [names.index(name) for name in feet]
         self._needed = _with_parents([*self._turned, *self._feet], self._parents)
         self._ankle_m = _ankle_height(body, self._feet)
@@ -173,12 +174,20 @@ class Character:
 
     def world(self, moved: Any) -> RigMotion:
         """Where a motion on this rig turns the bones."""
+        return self.world_and_legs(moved)[0]
+
+    def world_and_legs(self, moved: Any) -> tuple[RigMotion, Floats]:
+        """Where a motion on this rig turns the bones, and where its legs are.
+
+        Those are (T, 2, 3, 3): hip, knee and ankle, left and right; (T, 0, 3, 3) without feet.
+        """
         world, positions = self._posed(moved)
         hips = np.mean([positions[thigh] for thigh in self._thighs], axis=0)
         rotations = np.stack([world[joint] for joint in self._turned], axis=1)
         ankles = [positions[foot][:, 1] for foot in self._feet]
         lowest = np.min(ankles, axis=0) if ankles else np.full(len(hips), self._ankle_m)
-        return RigMotion(moved.frame_time_s, rotations, hips, lowest - self._ankle_m)
+        motion = RigMotion(moved.frame_time_s, rotations, hips, lowest - self._ankle_m)
+        return motion, self._legs(positions)
 
     @property
     def has_feet(self) -> bool:
@@ -190,16 +199,11 @@ class Character:
         """How high ankles are while the feet stand on the floor."""
         return self._ankle_m
 
-    def legs(self, moved: Any) -> Floats:
-        """(T, 2, 3, 3) where hips, knees and ankles are, left and right, on a rig with feet."""
-        _, positions = self._posed(moved)
-        names = list(self._skeleton.names)
-        knees = [names.index(self.joints[shank]) for shank in _SHANKS]
-        points = [
-            [positions[bone] for bone in leg]
-            for leg in zip(self._thighs, knees, self._feet, strict=True)
-        ]
-        return np.moveaxis(np.array(points), 2, 0)
+    def _legs(self, positions: dict[int, Floats]) -> Floats:
+        if not self.has_feet:
+            return np.empty((len(positions[0]), 0, 3, 3))
+        legs = zip(self._thighs, self._knees, self._feet, strict=True)
+        return np.moveaxis(np.array([[positions[bone] for bone in leg] for leg in legs]), 2, 0)
 
     def _posed(self, moved: Any) -> tuple[dict[int, Floats], dict[int, Floats]]:
         """(T, 3, 3) and (T, 3) of the needed bones in the character's space."""

@@ -278,8 +278,10 @@ class LiveSession:
         silent_s = time.perf_counter() - max(self._poses.last_reading_s, self._begun_s)
         if silent_s < NO_READINGS_S:
             return ""
-        reasons = [link["message"] for link in status["links"] if link["message"]]
-        return f"No readings for {silent_s:.0f} s" + (f": {reasons[0]}" if reasons else "")
+        reason = next((link["message"] for link in status["links"] if link["message"]), "")
+        if reason:
+            return f"No readings for {silent_s:.0f} s: {reason}"
+        return f"No readings for {silent_s:.0f} s"
 
     def _advance(self, samples: Any) -> None:
         if self._poses is None:

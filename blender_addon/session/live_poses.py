@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from .core import core
 from .errors import InputError
+from .match import odd_sensor
 from .methods import MethodChoice
 
 LARGEST_BACKLOG = 15
@@ -54,6 +55,8 @@ class Quality:
     """Of 99 in 100 poses."""
     advice: str = ""
     """What would help to a better match; empty when it is good."""
+    odd_sensor: str = ""
+    """The location of a sensor that fits far worse than the others; empty without one."""
 
 
 class LivePoses:
@@ -88,6 +91,7 @@ class LivePoses:
         )
         self._match = core().report.LiveMatch(_NUM_POSES, motions)
         self.latencies_s: deque[float] = deque(maxlen=_NUM_POSES)
+        self._misfits: deque[NDArray[np.float64]] = deque(maxlen=_NUM_POSES)
         self._num_poses = 0
 
     def advance(self, samples: Any) -> Pose | None:
@@ -114,6 +118,7 @@ class LivePoses:
         if not self.latencies_s:
             return Quality(num_skipped=num_skipped)
         middle, worst = np.quantile(self.latencies_s, [0.5, 0.99])
+        sites = [sensor.site for sensor in self._reconstructor.sensors]
         return Quality(
             self._num_poses,
             num_skipped,
@@ -121,11 +126,14 @@ class LivePoses:
             float(middle),
             float(worst),
             self._match.advice,
+            odd_sensor(sites, np.array(self._misfits)) if self._misfits else "",
         )
 
     def _pose(self, estimate: Any) -> Pose:
         self._num_poses += 1
         self._match.add(estimate)
+        if "sensor_misfit_mps2" in estimate.diagnostics:
+            self._misfits.append(np.array(estimate.diagnostics["sensor_misfit_mps2"]))
         self.latencies_s.append(time.perf_counter() - estimate.time_s)
         return Pose(
             self._num_poses,

@@ -15,6 +15,7 @@ from .certainty import SensorCurves, sensor_curves, spread_of
 from .core import core
 from .database import Database, databases
 from .job import Job, Progress
+from .match import Match, match_of
 from .methods import MethodChoice, needs_database
 from .take import LoadedTake, takes
 
@@ -31,10 +32,7 @@ class Performance:
     contacts: NDArray[np.float64]
     """(T, 2) how certain it is that the left and the right foot stand, 0 to 1."""
     duration_s: float
-    match: str
-    """How well the sensors match the motion database: good, fair or poor."""
-    is_guess: bool
-    """Whether the database has nothing like the take."""
+    match: Match
     spread_m: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)))
     """(T, J) how far the retrieved poses deviate; (T, 0) where the method tells nothing."""
     curves: SensorCurves | None = None
@@ -67,20 +65,6 @@ def keep(performance: Performance) -> None:
 def kept(name: str) -> Performance | None:
     """The last result of the take with that name, if it was made in this session."""
     return _kept.get(name)
-
-
-def advice_for(match: str, *, is_guess: bool) -> str:
-    """What to do about a match that is not good; empty when it is."""
-    if is_guess:
-        return "The motion database has nothing like this take: add clips of such movements to it"
-    if match == "poor":
-        return (
-            "Poor match: calibrate the sensors, check where they are worn, "
-            "or add clips of such movements to the database"
-        )
-    if match == "fair":
-        return "Fair match: calibrating the sensors, or more clips of such movements, may help"
-    return ""
 
 
 def reconstruct_job(
@@ -126,9 +110,8 @@ def reconstruct(
     progress: Progress,
 ) -> Performance:
     """The motion of the take; no database for methods that need none. Raises what the core says."""
-    sparse_mocap = core()
     motions = database.motions if database is not None else None
-    solved = sparse_mocap.reconstruct(
+    solved = core().reconstruct(
         take.take,
         motions,
         best_quality=best_quality,
@@ -137,14 +120,12 @@ def reconstruct(
         progress=progress,
     )
     motion = solved.motion
-    quality = sparse_mocap.quality.quality_of(solved, motions)
     return Performance(
         name=take.name,
         motion=motion,
         contacts=np.asarray(solved.contacts),
         duration_s=(motion.num_frames - 1) * motion.frame_time_s,
-        match=sparse_mocap.report.match(solved, motions),
-        is_guess=quality is not None and quality.is_unlike_the_database,
+        match=match_of(solved, motions),
         spread_m=spread_of(solved),
         curves=sensor_curves(solved),
         latent=np.asarray(solved.diagnostics.get("latent", np.empty((motion.num_frames, 0)))),

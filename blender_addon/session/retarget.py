@@ -81,14 +81,24 @@ def rig_take(target: Target, motion: Any, contacts: Floats, lock: FootLock) -> R
 
 def tracks_of(controls: Controls, motion: RigMotion) -> list[Track]:
     """What the controls' bones are keyed with."""
+    found = channels(controls, motion)
+    turns = iter(_quaternions([one.rotations for one in found if one.rotations is not None]))
     return [
-        Track(
-            found.name,
-            None if found.rotations is None else without_jumps(quaternions_of(found.rotations)),
-            found.location,
-        )
-        for found in channels(controls, motion)
+        Track(one.name, None if one.rotations is None else next(turns), one.location)
+        for one in found
     ]
+
+
+def _quaternions(rotations: list[Floats]) -> list[Floats]:
+    """(T, 4) of each bone's rotations (T, 3, 3), without jumps of sign.
+
+    A live pose takes them all at once, which saves time, and a take one bone after the other, which
+    saves memory.
+    """
+    if rotations and len(rotations[0]) == 1:
+        quaternions = quaternions_of(np.stack(rotations))
+        return list(np.where(quaternions[..., :1] < 0.0, -quaternions, quaternions))
+    return [without_jumps(quaternions_of(one)) for one in rotations]
 
 
 def quaternions_of(matrices: Floats) -> Floats:

@@ -13,7 +13,10 @@ from ..session import live, sensors
 from ..session.calibrating import CALIBRATING
 from ..session.core import missing_reason
 from ..session.live import LiveSession, LiveState
+from ..session.live_poses import Quality
+from ..session.match import ODD_SENSOR, advice_for
 from ..session.methods import missing_file
+from ..session.names import shown_site
 from ..session.port_scanner import port_scanner
 from . import sensors as sensor_panels
 from . import text
@@ -185,12 +188,24 @@ class SPARSEMOCAP_PT_live_messages(StepPanel, Panel):
             problems += [state.no_readings, state.warning]
         for problem in filter(None, problems):
             text.error(layout, context, problem)
+        if session.is_live_wanted and not state.no_readings:
+            _advice(layout, context, state.quality)
         for link in state.links:
             if link["message"]:
                 text.paragraph(layout, context, str(link["message"]), icon="INFO")
         if state.recording is not None:
             text.paragraph(layout, context, "The recording continues even if Blender quits", "REC")
         _last_take(layout, context)
+
+
+def _advice(layout: UILayout, context: Context, quality: Quality) -> None:
+    """What would help."""
+    if quality.odd_sensor:
+        odd = tr(ODD_SENSOR).format(site=tr(shown_site(quality.odd_sensor)))
+        text.paragraph(layout, context, odd, icon="ERROR")
+    advice = advice_for(quality.match)
+    if advice:
+        text.paragraph(layout, context, advice, icon="INFO")
 
 
 def _last_take(layout: UILayout, context: Context) -> None:

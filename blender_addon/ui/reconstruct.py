@@ -8,15 +8,19 @@ from bpy.types import Context, Panel, UILayout
 from ..scene import overlay, sensor_graph
 from ..scene.armature import is_ours
 from ..scene.ghost import ghost_of
-from ..scene.performance import facts_of, performed_action
+from ..scene.performance import Facts, facts_of, performed_action
 from ..scene.settings import SPARSEMOCAP_PG_settings, settings_of
 from ..scene.translations import tr
 from ..session.bake import PLACING_AGAIN
 from ..session.core import missing_reason
+from ..session.match import ODD_SENSOR, poor_parts
 from ..session.methods import has_best_quality, missing_file, preset_items
-from ..session.reconstruct import RECONSTRUCTING, advice_for, kept
+from ..session.names import shown_site
+from ..session.reconstruct import RECONSTRUCTING, kept
 from . import text
 from .step import StepPanel, action_button, job_is_running
+
+_MOST_PARTS = 4  # poor ones
 
 
 class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
@@ -158,10 +162,11 @@ class SPARSEMOCAP_PT_options(StepPanel, Panel):
 def _quality(layout: UILayout, settings: SPARSEMOCAP_PG_settings) -> None:
     """Live or best quality; only live where the method has no other."""
     row = layout.row(align=True, heading="Quality")
+    if not has_best_quality(settings.method):
+        row.label(text="Live")
+        return
     row.prop(settings, "offline", text="Live", toggle=True, invert_checkbox=True)
-    best = row.row(align=True)
-    best.enabled = has_best_quality(settings.method)
-    best.prop(settings, "offline", text="Best", toggle=True)
+    row.prop(settings, "offline", text="Best", toggle=True)
 
 
 def _performed(layout: UILayout, context: Context) -> None:
@@ -181,9 +186,7 @@ def _performed(layout: UILayout, context: Context) -> None:
         ("Match", tr(facts.match)),
     ]
     text.facts(layout, rows)
-    advice = advice_for(facts.match, is_guess=facts.is_guess)
-    if advice:
-        text.paragraph(layout, context, advice, icon="ERROR" if facts.is_guess else "INFO")
+    _poor(layout, context, facts)
     if job_is_running(PLACING_AGAIN):
         action_button(layout, "sparse_mocap.update_action", "NONE", PLACING_AGAIN, is_ready=True)
     elif kept(facts.take) is not None:
@@ -202,6 +205,23 @@ def _performed(layout: UILayout, context: Context) -> None:
     else:
         row.operator("sparse_mocap.stop_comparing", icon="GHOST_DISABLED")
     row.operator("sparse_mocap.push_to_nla", text="To NLA", icon="NLA_PUSHDOWN")
+
+
+def _poor(layout: UILayout, context: Context, facts: Facts) -> None:
+    """Where the result is poor, and what would help."""
+    parts = poor_parts(facts.seconds.split())
+    if parts:
+        row = layout.row(align=True)
+        shown = ", ".join(f"{begin}-{end}" for begin, end in parts[:_MOST_PARTS])
+        shown += " ..." if len(parts) > _MOST_PARTS else ""
+        row.label(text=tr("Poor: {parts} s").format(parts=shown), translate=False)
+        row.operator("sparse_mocap.next_poor_part", text="", icon="NEXT_KEYFRAME")
+    if facts.odd_sensor:
+        odd = tr(ODD_SENSOR).format(site=tr(shown_site(facts.odd_sensor)))
+        text.paragraph(layout, context, odd, icon="ERROR")
+    if facts.advice:
+        icon = "ERROR" if facts.is_guess else "INFO"
+        text.paragraph(layout, context, facts.advice, icon=icon)
 
 
 CLASSES = (

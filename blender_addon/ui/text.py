@@ -9,7 +9,7 @@ from collections.abc import Callable
 import blf
 from bpy.types import Context, UILayout
 
-from ..scene.translations import tr
+from ..scene.translations import tr, tr_line
 
 _FONT = 0  # the interface's
 _MARGIN_PX = 76.0  # of panel and box, and the scroll bar
@@ -51,7 +51,7 @@ def error(layout: UILayout, context: Context, text: str) -> None:
     """Show an error."""
     box = layout.box()
     box.alert = True
-    paragraph(box, context, text, icon="ERROR")
+    paragraph(box, context, tr_line(text), icon="ERROR")
 
 
 def facts(layout: UILayout, rows: list[tuple[str, str]]) -> None:

@@ -104,9 +104,9 @@ def choose_files() -> None:
     bpy.ops.sparse_mocap.load_take(filepath=str(library().take))
 
 
-def reconstruct(**options) -> bpy.types.Object:
-    """Step 3; returns the armature."""
-    assert bpy.ops.sparse_mocap.reconstruct(**options) == {"FINISHED"}
+def reconstruct(*, offline: bool = False, **options) -> bpy.types.Object:
+    """Step 3, in live quality, which is the faster one; returns the armature."""
+    assert bpy.ops.sparse_mocap.reconstruct(offline=offline, **options) == {"FINISHED"}
     return bpy.context.view_layer.objects.active
 
 

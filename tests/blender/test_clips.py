@@ -31,7 +31,8 @@ def test_preview_shows_the_clip():
     before = (scene.frame_start, scene.frame_end, scene.render.fps, scene.use_preview_range)
     for index in (0, 2):
         armature = _preview(index=index)
-        motion = database.motions.clip_motion(index)
+        motion = database.motions.clip_motion(index, extremities=True)
+        assert {"foot.L", "toe.R", "hand.L"} <= set(armature.data.bones.keys())
         wanted = in_blenders_axes(motion.joint_positions("world"))
         for frame in (0, motion.num_frames - 1):
             at = 5 + frame * motion.frame_time_s * 24

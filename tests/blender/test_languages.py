@@ -3,9 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+
 import bpy
 import installed
-from support import Skipped, addon
+import rigs
+from support import Skipped, addon, choose_files, error_of, raised, settings
 
 NOT_SHOWN = {
     *("directory", "index"),  # what file browsers and buttons fill in
@@ -13,32 +17,50 @@ NOT_SHOWN = {
 }
 
 
-def _german() -> str:
-    """What Blender calls it. Raises Skipped in a Blender without languages."""
-    system = bpy.context.preferences.view.bl_rna.properties["language"]
-    names = [item.identifier for item in system.enum_items] or bpy.app.translations.locales
-    found = [name for name in names if name in ("de", "de_DE")]
-    if not found:
+@contextmanager
+def german() -> Iterator[None]:
+    """Blender in German. Raises Skipped in a Blender without languages."""
+    view = bpy.context.preferences.view
+    before = (view.language, view.use_translate_interface)
+    for name in ("de_DE", "de"):
+        with suppress(TypeError):  # Blender calls it otherwise
+            view.language = name
+    if not view.language.startswith("de"):
         raise Skipped("this Blender has no languages")
-    return found[0]
+    try:
+        view.use_translate_interface = True
+        yield
+    finally:
+        view.language, view.use_translate_interface = before
 
 
 def test_texts_are_german_where_blender_is():
-    view = bpy.context.preferences.view
-    before = (view.language, view.use_translate_interface)
     tr = addon("scene.translations").tr
     assert tr("Live Sensors") == "Live Sensors"
-    try:
-        view.language = _german()
-        view.use_translate_interface = True
+    with german():
         assert tr("Live Sensors") == "Sensoren live"
         assert tr("something else") == "something else"
         in_operators = bpy.app.translations.pgettext_iface("Reconstruct", "Operator")
         assert in_operators == "Rekonstruieren"
         installed.unregister()
         assert bpy.app.translations.pgettext_iface("Live Sensors") == "Live Sensors"
-    finally:
-        view.language, view.use_translate_interface = before
+
+
+def test_errors_are_german_where_blender_is():
+    armature = rigs.named_rig("mixamo")
+    armature.name, armature.scale = "Render", (1.0, 1.0, -1.0)  # a word that Blender translates
+    settings().target = armature
+    choose_files()
+    mirrored = '"Render" has a negative scale: apply the scale (Ctrl A)'
+    assert error_of(bpy.ops.sparse_mocap.reconstruct) == mirrored
+    with german():
+        said = raised(RuntimeError, bpy.ops.sparse_mocap.reconstruct)
+        assert said.endswith(": „Render“ ist gespiegelt skaliert: die Skalierung anwenden (Strg A)")
+        line = addon("scene.translations").tr_line
+        running = line("Loading Take is still running: wait or cancel it first")
+        assert running.endswith("läuft noch: warten oder zuerst abbrechen")
+        assert line("Choose a motion database first") == "Zuerst eine Bewegungsdatenbank wählen"
+        assert line("walk.bvh:3:1: expected 3 numbers") == "walk.bvh:3:1: expected 3 numbers"
 
 
 def test_every_operator_and_setting_is_in_the_table():

@@ -132,11 +132,3 @@ def test_without_a_character_it_says_what_to_do():
     settings().target = None
     bpy.context.view_layer.objects.active = None
     assert "Select a character" in error_of(bpy.ops.sparse_mocap.toggle_overlay)
-
-
-def test_advice_follows_the_match():
-    advice = addon("session.reconstruct").advice_for
-    assert advice("good", is_guess=False) == ""
-    assert "calibrat" in advice("fair", is_guess=False)
-    assert "calibrate" in advice("poor", is_guess=False)
-    assert "add clips" in advice("good", is_guess=True)

@@ -294,7 +294,8 @@ def test_numbers_that_are_none_leave_nothing_behind():
     motion.num_frames, motion.offset_tracks = good.motion.num_frames, []
     motion.root_positions = np.full((motion.num_frames, 3), np.nan)
     motion.rotations = np.asarray(good.motion.rotations)
-    bad = addon("session.reconstruct").Performance("bad", motion, good.contacts, 1.0, "", False)
+    match = addon("session.match").Match()
+    bad = addon("session.reconstruct").Performance("bad", motion, good.contacts, 1.0, match)
     bake = addon("session.bake")
     take = bake.PlacedTake(bad, bake.Placement(1.0, 24.0, False), motion, ())
     before = contents()

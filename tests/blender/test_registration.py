@@ -52,7 +52,7 @@ def test_settings_have_defaults_in_every_scene():
     assert other.sparse_mocap.method == settings().method == "path_regression"
     assert other.sparse_mocap.preset == settings().preset == "default"
     assert other.sparse_mocap.mirror
-    assert not other.sparse_mocap.offline
+    assert other.sparse_mocap.offline
 
 
 def test_a_missing_core_is_said_in_one_line():

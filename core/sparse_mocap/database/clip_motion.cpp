@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sparse_mocap/database/database_rows.hpp"
+#include "sparse_mocap/motion/extremities.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 
 namespace sparse_mocap {
@@ -32,6 +33,35 @@ Motion clip_motion(const MotionDatabase& database, int clip_index) {
     const auto rotations = pose_rotations(motion.skeleton, angles, yaw_rad);
     motion.root_positions.push_back(position);
     motion.rotations.insert(motion.rotations.end(), rotations.begin(), rotations.end());
+  }
+  return motion;
+}
+
+namespace {
+
+// R_parent_joint of a clip's foot, toes or hand in a row; relaxed where its file has none.
+Quat extremity_rotation(const MotionDatabase& database, const Clip& clip, int row,
+                        const Skeleton& skeleton, int e) {
+  if (database.extremities().rows() == 0 || !clip.has_extremity[static_cast<std::size_t>(e)])
+    return Quat(relaxed(skeleton, static_cast<extremity::Index>(e)));
+  return rotation_of_vector(
+      database.extremities().row(row).segment<3>(3 * e).transpose().cast<double>());
+}
+
+}  // namespace
+
+Motion clip_motion_with_extremities(const MotionDatabase& database, int clip_index) {
+  const Motion plain = clip_motion(database, clip_index);
+  const Clip& clip = database.clips()[static_cast<std::size_t>(clip_index)];
+  Motion motion;
+  motion.skeleton = with_extremities(plain.skeleton);
+  motion.frame_time_s = plain.frame_time_s;
+  motion.root_positions = plain.root_positions;
+  for (int t = 0; t < plain.num_frames(); ++t) {
+    for (int j = 0; j < kNumStandardJoints; ++j) motion.rotations.push_back(plain.rotation(t, j));
+    for (int e = 0; e < kNumExtremities; ++e)
+      motion.rotations.push_back(
+          extremity_rotation(database, clip, clip.begin + t, motion.skeleton, e));
   }
   return motion;
 }

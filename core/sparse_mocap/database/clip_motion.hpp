@@ -10,4 +10,7 @@ namespace sparse_mocap {
 // the origin. Throws std::out_of_range for an index that no clip has.
 Motion clip_motion(const MotionDatabase& database, int clip_index);
 
+// The same with feet, toes and hands, which are relaxed in clips whose files have none.
+Motion clip_motion_with_extremities(const MotionDatabase& database, int clip_index);
+
 }  // namespace sparse_mocap

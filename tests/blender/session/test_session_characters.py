@@ -17,7 +17,6 @@ from blender_addon.session.character import Character, FootLock, RestBone
 from blender_addon.session.errors import InputError
 from blender_addon.session.live_poses import Pose
 from blender_addon.session.methods import MethodChoice
-from blender_addon.session.reconstruct import advice_for
 from blender_addon.session.retarget import on_scene_frames, quaternions_of, without_jumps
 from blender_addon.session.stage import Stage
 
@@ -162,11 +161,6 @@ def test_the_stage_recentres_turns_and_keeps_in_place():
     ahead = Rotation.from_euler("y", 70.0, degrees=True).apply([0.0, 0.0, 1.0])
     later = Pose(2, pose.rotations, pose.root_position + ahead, 0.1)
     assert np.allclose(stage.shown(later, in_place=False).root_position, [0.0, 0.9, 1.0])
-
-
-def test_advice_is_given_for_what_is_not_good():
-    assert advice_for("good", is_guess=False) == ""
-    assert advice_for("poor", is_guess=False) != advice_for("fair", is_guess=False)
 
 
 def test_a_recording_that_is_cancelled_is_saved_all_the_same(tmp_path, monkeypatch):

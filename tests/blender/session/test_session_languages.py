@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 import sparse_mocap
+from sparse_mocap import quality
 from sparse_mocap.capture.link import State
 
 from blender_addon.languages import german
@@ -20,6 +21,7 @@ from blender_addon.session import (
     demo,
     imported,
     mapping,
+    match,
     pose_guide,
     reconstruct,
     sensors,
@@ -44,6 +46,14 @@ IGNORED = {
     "Select a character with a take that was reconstructed since Blender was started",  # an error
     "3D View",  # Blender's own name of a keymap
     *("folder", "calibration"),  # names of settings
+}
+NOT_TRANSLATED = {
+    "Built a database of {} clips from {} files{}",  # sentences whose parts come and go
+    "Built a database of {}{}",
+    "Imported {} files, each on its own armature{}",
+    'Imported "{}": {}, {}',
+    "and {} more warnings",
+    "None",
 }
 NAMED = ("name", "description", "bl_label", "bl_description", "text", "heading", "title")
 
@@ -96,13 +106,14 @@ def definitions_in(path: Path) -> Iterator[tuple[int, str]]:
 
 def known_texts() -> list[str]:
     """What the panels show that is kept without Blender."""
-    advice = [reconstruct.advice_for(match, is_guess=False) for match in ("poor", "fair")]
+    advice = [match.advice_for("poor"), match.advice_for("fair"), match.ODD_SENSOR]
+    core_advice = [getattr(quality, name) for name in ("_UNLIKE_ADVICE", "_ALIKE_ADVICE")]
+    advice += [text[:1].upper() + text[1:] for text in core_advice]
     jobs = [database.BUILDING, demo.MAKING, demo.TRYING, imported.IMPORTING, bake.PLACING_AGAIN]
     jobs += [reconstruct.RECONSTRUCTING, sensors.STARTING_LIVE, sensors.SAVING_TAKE]
     jobs += [training.TRAINING]
     return [
         *advice,
-        reconstruct.advice_for("poor", is_guess=True),
         *jobs,
         calibrating.CALIBRATING,
         *(phase.text for phase in calibrating.PHASES),
@@ -135,14 +146,53 @@ def test_every_text_is_in_the_table(language: str) -> None:
     assert [text for text in known_texts() if text not in table] == []
 
 
+def reported_in(path: Path) -> Iterator[tuple[int, str]]:
+    """The lines that a file reports or raises, {} where something is filled in."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        said: list[ast.expr] = []
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.args:
+            said = [node.args[0]] if node.func.id in ("InputError", "tr_line") else []
+        elif isinstance(node, ast.FunctionDef) and node.name in ("act", "do", "apply"):
+            returned = [inner for inner in ast.walk(node) if isinstance(inner, ast.Return)]
+            said = [inner.value for inner in returned if inner.value is not None]
+        for text in filter(None, map(_template, said)):
+            yield node.lineno, text
+
+
+def _template(node: ast.expr) -> str:
+    parts = node.values if isinstance(node, ast.JoinedStr) else [node]
+    if not all(isinstance(part, ast.Constant | ast.FormattedValue) for part in parts):
+        return ""
+    return "".join(str(part.value) if isinstance(part, ast.Constant) else "{}" for part in parts)
+
+
+def _written() -> list[Path]:
+    return [path for part in ("ops", "scene", "session") for path in (ADDON / part).glob("*.py")]
+
+
+def _templates_in(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.JoinedStr | ast.Constant):
+            yield _template(node)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_report_is_in_the_table(language: str) -> None:
+    table = {re.sub(r"\{\w+\}", "{}", text) for text in LANGUAGES[language]}
+    found = [(path, *report) for path in sorted(_written()) for report in reported_in(path)]
+    assert len(found) > 100
+    missing = [f"{path.name}:{line}: {text}" for path, line, text in found if text not in table]
+    assert [line for line in missing if line.partition(": ")[2] not in NOT_TRANSLATED] == []
+
+
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_nothing_is_in_the_table_that_is_not_shown(language: str) -> None:
     shown = {text for path in SHOWN for _, text in texts_in(path)}
     shown |= {text for path in DEFINED for _, text in definitions_in(path)}
-    others = [ADDON / "ops/job_operator.py", ADDON / "session/demo.py", ADDON / "ui/take.py"]
-    written = "\n".join(path.read_text("utf-8") for path in others)
+    written = {template for path in _written() for template in _templates_in(path)}
     left = set(LANGUAGES[language]) - shown - set(known_texts())
-    assert {text for text in left if f'"{text}"' not in written} <= {"and", "X", "Y", "Z", "None"}
+    left = {text for text in left if re.sub(r"\{\w+\}", "{}", text) not in written}
+    assert left <= {"and", "X", "Y", "Z", "None"}
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -48,7 +48,7 @@ def _shown(contact, frames=range(100), lock=None):
     plain, kept = [], []
     for frame in frames:
         on_rig = character.on_rig(_sway(frame))
-        moved, legs = character.world(on_rig), character.legs(on_rig)[0]
+        moved, [legs] = character.world_and_legs(on_rig)
         floor_m = float(legs[:, 2, 1].min())
         contacts = (contact(frame), contact(frame))
         time_s = frame / _RATE_HZ

@@ -93,8 +93,8 @@ def test_reconstruct_gives_the_take_a_motion(files, method):
     assert performance.duration_s == pytest.approx(5.0, abs=0.1)
     assert np.isfinite(performance.motion.joint_positions("world")).all()
     # The database holds that very motion; liu2011 does not search by the accelerations compared.
-    assert performance.match == ("fair" if method == "liu2011" else "good")
-    assert not performance.is_guess
+    assert performance.match.label == ("fair" if method == "liu2011" else "good")
+    assert not performance.match.is_guess
 
 
 def test_progress_can_stop_a_reconstruction(files):
