@@ -40,9 +40,12 @@ def replaced(path: str | os.PathLike[str], *, is_private: bool = False) -> Itera
     try:
         yield temporary
         _replace(temporary, target, 0o600 if is_private else 0o666 & ~_umask())
-    except BaseException:
+    except BaseException as error:
         with suppress(OSError):
             temporary.unlink()
+        is_temporary = isinstance(error, OSError) and error.filename in (None, name)
+        if is_temporary and error.errno is not None:  # a full disk, for one
+            raise type(error)(error.errno, error.strerror, str(target)) from None
         raise
 
 

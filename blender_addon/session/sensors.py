@@ -159,11 +159,11 @@ def save_take_job(
 def _save(module: Any, logs: Path, number: int, folder: Path) -> tuple[str, tuple[str, ...]]:
     try:
         recorded = module.recording_to_take(logs, number)
-    except module.CaptureError as error:
+        folder.mkdir(parents=True, exist_ok=True)
+        path = free_path(folder / f"take-{stamp()}.csv")
+        core().write_take(path, recorded.take)
+    except (module.CaptureError, OSError) as error:  # a full disk, for one
         raise InputError(f"{one_line_of(error)}; what was received is in {logs}") from error
-    folder.mkdir(parents=True, exist_ok=True)
-    path = free_path(folder / f"take-{stamp()}.csv")
-    core().write_take(path, recorded.take)
     return str(path), tuple(recorded.warnings)
 
 

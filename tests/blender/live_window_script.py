@@ -28,6 +28,7 @@ from live_support import DRIVER, OPTIONS  # noqa: E402
 from support import SITES  # noqa: E402
 
 ui, live_scene = installed.module("ui.registration"), installed.module("scene.live")
+compat = installed.module("scene.compat")
 prompt, jobs = installed.module("scene.prompt"), installed.module("session.job")
 CalibrationPanel = installed.module("ui.calibrate").SPARSEMOCAP_PT_calibration
 LivePanel = installed.module("ui.live").SPARSEMOCAP_PT_live
@@ -141,6 +142,60 @@ def calibrate_and_escape(session: Any) -> Steps:
     assert bpy.context.scene.sparse_mocap.calibration == ""
 
 
+def render_meanwhile() -> Steps:
+    """The pose stays while a render runs, nothing else begins, and the preview goes on afterwards."""
+    scene = bpy.context.scene
+    scene.render.engine, scene.cycles.samples = "CYCLES", 2000
+    scene.cycles.use_denoising = False
+    scene.render.resolution_x, scene.render.resolution_y = 320, 200
+    bpy.context.preferences.view.render_display_type = "NONE"
+    scene.camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    scene.collection.objects.link(scene.camera)
+    yield 0.1
+    assert call(bpy.ops.render.render, "INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+    yield from until(compat.is_rendering)
+    num_shown, pose = len(shown_late_s), points()
+    try:
+        call(bpy.ops.sparse_mocap.reconstruct)
+        raise AssertionError("a take is reconstructed during a render")
+    except RuntimeError as error:
+        assert "render is running" in str(error), error
+    yield 0.3
+    assert compat.is_rendering(), "the render was too short"
+    assert len(shown_late_s) == num_shown
+    assert np.array_equal(points(), pose)
+    for value in ("PRESS", "RELEASE"):  # ends the render
+        view()["window"].event_simulate(type="ESC", value=value, x=600, y=400)
+        yield 0.1
+    yield from until(lambda: not compat.is_rendering())
+    yield from until(lambda: len(shown_late_s) > num_shown + 3)
+    assert live_scene.followed() is not None
+
+
+def second_window(session: Any) -> Steps:
+    """Another window shows the same session, and no second one begins there."""
+    call(bpy.ops.screen.back_to_previous)  # there is no second one beside a full area
+    yield 0.4
+    call(bpy.ops.wm.window_new)
+    yield 0.5
+    first, second = bpy.context.window_manager.windows[:2]
+    with bpy.context.temp_override(window=second):
+        try:
+            bpy.ops.sparse_mocap.connect_sensors()
+            raise AssertionError("a second session has begun")
+        except RuntimeError as error:
+            assert "still connected" in str(error), error
+    num_shown = len(shown_late_s)
+    yield from until(lambda: len(shown_late_s) > num_shown + 3)
+    assert installed.module("session.live").current() is session
+    with bpy.context.temp_override(window=second):
+        bpy.ops.wm.window_close()
+    yield 0.3
+    assert list(bpy.context.window_manager.windows) == [first]
+    call(bpy.ops.screen.screen_full_area)
+    yield 0.4
+
+
 def play() -> Steps:
     drawn = watch_draws()
     watch_latency()
@@ -161,6 +216,8 @@ def play() -> Steps:
     yield from until(lambda: len(shown_late_s) > 5)
     call(bpy.ops.view3d.view_selected)
     yield from calibrate_and_escape(session)
+    yield from render_meanwhile()
+    yield from second_window(session)
     call(bpy.ops.view3d.view_selected)
     call(bpy.ops.sparse_mocap.record_take)
     yield 0.7

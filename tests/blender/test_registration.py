@@ -3,7 +3,16 @@ import threading
 
 import bpy
 import installed
-from support import addon, error_of, is_registered, library, loaded_modules, settings
+from support import (
+    Skipped,
+    addon,
+    choose_files,
+    error_of,
+    is_registered,
+    library,
+    loaded_modules,
+    settings,
+)
 
 
 def _ours() -> list[str]:
@@ -35,6 +44,20 @@ def test_twenty_times_leaves_nothing():
         assert _ours() == []
         assert (_handlers(), threading.active_count(), set(dir(bpy.types.Scene))) == before
         assert loaded_modules() == set()
+
+
+def test_reloaded_scripts_register_it_once():
+    """Blender's own Reload Scripts; the sources are not enabled, so it leaves them alone."""
+    if not bpy.app.binary_path:
+        raise Skipped("a bpy module does not reload scripts")
+    handlers, before = _handlers(), sorted(_ours())
+    for _ in range(2):
+        assert bpy.ops.script.reload() == {"FINISHED"}
+        assert is_registered()
+        assert _handlers() == handlers
+        assert sorted(_ours()) == before
+    choose_files()
+    assert bpy.ops.sparse_mocap.reconstruct(offline=False) == {"FINISHED"}
 
 
 def test_unregister_ends_the_job_at_work(tmp_path):

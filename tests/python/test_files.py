@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import csv
 import errno
+import errno
 import gc
 import os
 import shutil
@@ -38,6 +39,19 @@ def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
         fail()
     assert path.read_text(encoding="utf-8") == "old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_full_disk_is_said_of_the_file_that_was_to_be_written(tmp_path: Path) -> None:
+    """Not of a temporary one, and not of none."""
+    path = tmp_path / "file.txt"
+    for said in ((), (None,)):
+        with pytest.raises(OSError, match="No space left") as failed, replaced(path) as temporary:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), *(said and (str(temporary),)))
+        assert (failed.value.errno, failed.value.filename) == (errno.ENOSPC, str(path))
+    with pytest.raises(OSError, match="gone") as failed, replaced(path):
+        raise FileNotFoundError(errno.ENOENT, "gone", "another.txt")
+    assert failed.value.filename == "another.txt"
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_write_replaces_and_keeps_permissions(tmp_path: Path) -> None:
