@@ -167,6 +167,9 @@ REPORTS = {
     "A recording is running: stop it before you calibrate": (
         "Eine Aufnahme läuft: sie vor dem Kalibrieren beenden"
     ),
+    "No tracker sent data in all poses: look after them and calibrate again": (
+        "Kein Tracker sendete in allen Posen: nach ihnen sehen und neu kalibrieren"
+    ),
     "Choose the port of the sensors first": "Zuerst den Port der Sensoren wählen",
     "{port} is in the list twice: remove one": "{port} steht zweimal in der Liste: eins entfernen",
     "{port}: cannot be used": "{port}: kann nicht benutzt werden",
@@ -237,6 +240,9 @@ REPORTS = {
     '"{name}" plays "{action}"': "„{name}“ spielt „{action}“",
     "The ghost is removed": "Der Ghost ist entfernt",
     "Poor from {begin} to {end} s of the take": "Schlecht von {begin} bis {end} s der Aufnahme",
+    "Calibrated {count} trackers, saved as {path}": (
+        "{count} Tracker kalibriert, gespeichert als {path}"
+    ),
     "Calibrated {count} sensors, saved as {path}": (
         "{count} Sensoren kalibriert, gespeichert als {path}"
     ),

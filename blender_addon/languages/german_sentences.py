@@ -14,7 +14,7 @@ SENTENCES = {
     "Open a motion database (.smdb), or build one:": (
         "Eine Bewegungsdatenbank (.smdb) öffnen oder erstellen:"
     ),
-    "Motion capture to download": "Motion Capture zum Herunterladen",
+    "Motion capture to download": "Zum Herunterladen",
     "Free for any use but selling the data; name mocap.cs.cmu.edu and NSF EIA-0196217": (
         "Frei für alles außer dem Verkauf der Daten; mocap.cs.cmu.edu und NSF EIA-0196217 nennen"
     ),
@@ -33,6 +33,11 @@ SENTENCES = {
     ),
     "Empty: the add-on makes a figure": "Leer: das Add-on macht eine Figur",
     "Choose a motion database first": "Zuerst eine Bewegungsdatenbank wählen",
+    "Choose a folder with motion files first": "Zuerst einen Ordner mit Bewegungsdateien wählen",
+    "Choose a port first": "Zuerst einen Port wählen",
+    "Stop the recording first": "Zuerst die Aufnahme beenden",
+    "Waits for: {job}": "Wartet auf: {job}",
+    "{count} sensors": "{count} Sensoren",
     "Choose a take first": "Zuerst eine Aufnahme wählen",
     "Train or open a model first": "Zuerst ein Modell trainieren oder öffnen",
     "Train from the motion database": "Aus der Bewegungsdatenbank trainieren",

@@ -53,13 +53,18 @@ def match_of(solved: Any, database: Any) -> Match:
     if quality is None:
         label = str(sparse_mocap.report.match(solved, database))
         return Match(label, advice=advice_for(label), odd_sensor=odd)
-    advice = quality.advice[:1].upper() + quality.advice[1:]
+    advice = advice_for(quality.label, quality.advice)
     is_guess = quality.is_unlike_the_database
     return Match(quality.label, tuple(quality.second_labels), is_guess, advice, odd)
 
 
-def advice_for(label: str) -> str:
-    """What to do about a match of which no more is known; empty when it is good."""
+def advice_for(label: str, known: str = "") -> str:
+    """What to do about a match as a sentence; empty when it is good.
+
+    known: what the core says of it; without that it is what usually helps.
+    """
+    if known:
+        return known[0].upper() + known[1:]
     if label == POOR:
         return (
             "Poor match: calibrate the sensors, check where they are worn, "

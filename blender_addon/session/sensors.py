@@ -110,11 +110,15 @@ def live_preview_job(database_path: str, calibration_path: str, choice: MethodCh
     calibration = calibration_at(calibration_path)
 
     def work(progress: Progress) -> LivePreview:
+        database = None
         if needs_database(choice.method):
             database = databases.get(database_path)
             skeleton = core().with_extremities(database.motions.skeleton)
-            return LivePreview(database, calibration, skeleton)
-        return LivePreview(None, calibration, skeleton_of(choice))
+        else:
+            skeleton = skeleton_of(choice)
+        if not progress(1, 1, ""):
+            raise Cancelled("Cancelled")
+        return LivePreview(database, calibration, skeleton)
 
     return Job(STARTING_LIVE, work)
 

@@ -47,16 +47,20 @@ class SPARSEMOCAP_PT_calibration(StepPanel, Panel):
         if session is None or not session.state.is_connected:
             return
         layout.prop(settings, "height_m")
-        is_ready = bool(session.state.sensors) and session.state.recording is None
+        missing = "" if session.state.sensors else "Waiting for data"
+        if session.state.recording is not None:
+            missing = "Stop the recording first"
         action_button(
             layout, "sparse_mocap.calibrate_sensors", "ORIENTATION_GIMBAL", CALIBRATING,
-            is_ready=is_ready,
+            is_ready=not missing,
         )  # fmt: skip
         if any(sensor["has_orientation"] for sensor in session.state.sensors):
             action_button(
                 layout, "sparse_mocap.calibrate_by_poses", "OUTLINER_OB_ARMATURE",
-                CALIBRATING_BY_POSES, is_ready=is_ready,
+                CALIBRATING_BY_POSES, is_ready=not missing,
             )  # fmt: skip
+        if missing:
+            text.paragraph(layout, context, missing, icon="INFO")
 
 
 def _contents(layout: UILayout, context: Context, path: str) -> None:

@@ -116,6 +116,8 @@ def _build_form(
         BUILDING,
         is_ready=bool(settings.source),
     )
+    if not settings.source:
+        text.paragraph(box, context, "Choose a folder with motion files first", icon="INFO")
     box.operator("sparse_mocap.build_from_file", icon="ARMATURE_DATA")
 
 

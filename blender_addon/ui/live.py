@@ -76,6 +76,8 @@ def _choices(layout: UILayout, context: Context) -> None:
     row.scale_y = 1.5
     row.enabled = bool(settings.port)
     row.operator("sparse_mocap.connect_sensors", icon="LINKED")
+    if not settings.port:
+        text.paragraph(layout, context, "Choose a port first", icon="INFO")
 
 
 def _session(layout: UILayout, context: Context, session: LiveSession) -> None:
@@ -203,7 +205,7 @@ def _advice(layout: UILayout, context: Context, quality: Quality) -> None:
     if quality.odd_sensor:
         odd = tr(ODD_SENSOR).format(site=tr(shown_site(quality.odd_sensor)))
         text.paragraph(layout, context, odd, icon="ERROR")
-    advice = advice_for(quality.match)
+    advice = advice_for(quality.match, quality.advice)
     if advice:
         text.paragraph(layout, context, advice, icon="INFO")
 

@@ -215,7 +215,7 @@ def _poor(layout: UILayout, context: Context, facts: Facts) -> None:
         shown = ", ".join(f"{begin}-{end}" for begin, end in parts[:_MOST_PARTS])
         shown += " ..." if len(parts) > _MOST_PARTS else ""
         row.label(text=tr("Poor: {parts} s").format(parts=shown), translate=False)
-        row.operator("sparse_mocap.next_poor_part", text="", icon="NEXT_KEYFRAME")
+        row.operator("sparse_mocap.next_poor_part", text="", icon="FF")
     if facts.odd_sensor:
         odd = tr(ODD_SENSOR).format(site=tr(shown_site(facts.odd_sensor)))
         text.paragraph(layout, context, odd, icon="ERROR")

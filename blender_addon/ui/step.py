@@ -64,6 +64,8 @@ def action_button(
     row.scale_y = 1.5 if is_main else 1.0
     row.enabled = is_ready and job is None
     row.operator(operator, icon=icon)
+    if job is not None and has_details:
+        layout.label(text=tr("Waits for: {job}").format(job=tr(job.label)), icon="SORTTIME")
 
 
 def _progress(layout: UILayout, job: Job) -> None:

@@ -22,7 +22,7 @@ _MATCH_ICONS = {"good": "CHECKMARK", "fair": "REMOVE", "poor": "ERROR"}
 
 
 class SPARSEMOCAP_UL_takes(UIList):
-    """One line for each take: star, name, length, match."""
+    """One line for each take: star, name, length, sensors where there is room, match."""
 
     bl_idname = "SPARSEMOCAP_UL_takes"
 
@@ -41,7 +41,7 @@ class SPARSEMOCAP_UL_takes(UIList):
         row = layout.row(align=True)
         star = "SOLO_ON" if item.is_starred else "SOLO_OFF"
         row.prop(item, "is_starred", text="", icon=star, emboss=False)
-        split = row.split(factor=0.62, align=True)
+        split = row.split(factor=0.5 if text.is_wide(context) else 0.62, align=True)
         if is_missing(item):
             split.label(text=item.name, icon="ERROR", translate=False)
             split.label(text="missing")
@@ -50,6 +50,9 @@ class SPARSEMOCAP_UL_takes(UIList):
         seconds = split.row(align=True)
         seconds.alignment = "RIGHT"
         seconds.label(text=text.duration(item.duration_s))
+        if text.is_wide(context) and item.num_sensors:
+            sensors = tr("{count} sensors").format(count=item.num_sensors)
+            seconds.label(text=sensors, translate=False)
         row.label(text="", icon=_MATCH_ICONS.get(item.match, "BLANK1"))
 
 

@@ -16,6 +16,13 @@ _MARGIN_PX = 76.0  # of panel and box, and the scroll bar
 _ICON_PX = 24.0
 _USUAL_WIDTH_PX, _USUAL_POINTS = 260.0, 11
 _NARROWEST_PX = 80.0
+_WIDE_PX = 320.0
+
+
+def is_wide(context: Context) -> bool:
+    """Whether the sidebar has room for more than what is needed."""
+    scale = context.preferences.system.ui_scale or 1.0  # 0 in the background
+    return context.region is not None and context.region.width / scale >= _WIDE_PX
 
 
 def paragraph(layout: UILayout, context: Context, text: str, icon: str = "NONE") -> None:

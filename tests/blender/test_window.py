@@ -41,6 +41,10 @@ def test_escape_leaves_no_file(tmp_path):
     _in_window("escape", tmp_path)
 
 
+def test_escape_while_a_take_is_put_on_a_character_leaves_nothing(tmp_path):
+    _in_window("bake_escaped", tmp_path)
+
+
 def test_cancel_button_leaves_no_file(tmp_path):
     _in_window("cancel", tmp_path)
 

@@ -185,6 +185,40 @@ def press_escape() -> Steps:
         yield 0.05
 
 
+def bake_escaped() -> Steps:
+    """While the take is reconstructed, and while its keys are set."""
+    choose_files()
+    before, said = [item.name for item in bpy.data.objects], []
+    job_operator.one_line = lambda error: said.append(error) or str(error)
+    on_progress = jobs.Job._on_progress
+    slow_down(TIMEOUT_S)
+    job = start(bpy.ops.sparse_mocap.reconstruct)
+    yield 0.2
+    assert job.is_running
+    yield from press_escape()
+    yield from until(lambda: not job.is_running)
+    yield 0.3
+    jobs.Job._on_progress = on_progress
+    for is_halfway in (False, True):
+        assert [item.name for item in bpy.data.objects] == before
+        assert not bpy.data.actions
+        assert not bpy.data.armatures
+        assert jobs.current() is None
+        assert not said, "Esc is no error"
+        if not is_halfway:
+            yield from escape_while_keys_are_set()
+
+
+def escape_while_keys_are_set() -> Steps:
+    slices = installed.module("session.steps").Slices
+    advance = slices.advance
+    slices.advance = lambda self, _: False if bpy.data.actions else advance(self, 0.0)
+    start(bpy.ops.sparse_mocap.reconstruct)
+    yield from until(lambda: len(bpy.data.actions) == 1)
+    yield from press_escape()
+    yield 0.3
+
+
 def large_file() -> str:
     """A .bvh of 8 joints and 8,000 frames."""
     path = Path(FOLDER) / "large.bvh"
@@ -348,6 +382,7 @@ SCENARIOS = {
     "import_undone": import_undone_meanwhile,
     "reconstruct": reconstruct,
     "escape": escape,
+    "bake_escaped": bake_escaped,
     "cancel": cancel,
     "undo": undo_meanwhile,
     "load": load_meanwhile,

@@ -14,7 +14,7 @@ SITES = ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
 
 
 def test_poor_seconds_are_put_together():
-    assert poor_parts("good poor poor fair poor".split()) == [(1, 3), (4, 5)]
+    assert poor_parts(["good", "poor", "poor", "fair", "poor"]) == [(1, 3), (4, 5)]
     assert poor_parts(["poor"] * 3) == [(0, 3)]
     assert poor_parts([]) == poor_parts(["good", "fair"]) == []
 
