@@ -210,6 +210,27 @@ REPORTS = {
     'Live preview ended: "{name}" has no bone "{bone}" any more': (
         "Live-Vorschau beendet: „{name}“ hat den Knochen „{bone}“ nicht mehr"
     ),
+    # Models and the phone
+    "Select a clip in the list of clips first": "Zuerst einen Clip in der Liste auswählen",
+    "It is a model of {method}, not of {wanted}": "Das ist ein Modell von {method}, nicht {wanted}",
+    "The recording has {count} sensors, and one phone is expected: convert it with "
+    "`sparse-mocap import`": (
+        "Die Aufnahme hat {count} Sensoren, erwartet wird ein Telefon: mit `sparse-mocap import` "
+        "umwandeln"
+    ),
+    "Choose where to save the model first": "Zuerst wählen, wo das Modell gespeichert wird",
+    "The folder {folder} does not exist: choose another one": (
+        "Den Ordner {folder} gibt es nicht: einen anderen wählen"
+    ),
+    "The file of phases has a clip that is not trained from: {name}": (
+        "Die Datei der Phasen hat einen Clip, aus dem nicht gelernt wird: {name}"
+    ),
+    "Training from: {clips}": "Gelernt wird aus: {clips}",
+    "The phases of {count} clips are in {path}": "Die Phasen von {count} Clips stehen in {path}",
+    "Live Sensors is set up for a phone: press Connect there": (
+        "Sensoren live ist für ein Telefon eingestellt: dort Verbinden drücken"
+    ),
+    "Saved as {path}": "Gespeichert als {path}",
     # Whatever is done
     "A render is running: wait until it has finished": (
         "Ein Rendering läuft: warten, bis es fertig ist"

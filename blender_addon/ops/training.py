@@ -13,6 +13,7 @@ from ..scene import latent_view
 from ..scene.clips import clip_list, opened_database
 from ..scene.settings import SPARSEMOCAP_PG_settings, options_text, settings_of
 from ..scene.takes import add_take
+from ..scene.translations import tr_line
 from ..session.errors import InputError, one_line
 from ..session.job import Job
 from ..session.methods import models
@@ -102,7 +103,7 @@ class SPARSEMOCAP_OT_open_model(Operator):
             if model.method != settings.method:
                 raise InputError(f"It is a model of {model.method}, not of {settings.method}")
         except Exception as error:
-            self.report({"ERROR"}, one_line(error))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
         settings.training.model = self.filepath
         return {"FINISHED"}
@@ -177,11 +178,11 @@ class SPARSEMOCAP_OT_import_phone(Operator):
             )
             add_take(context.scene, path, takes.get(path))
         except Exception as error:
-            self.report({"ERROR"}, one_line(error))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
         for note in notes:
-            self.report({"INFO"}, note)
-        self.report({"INFO"}, f"Saved as {path}")
+            self.report({"INFO"}, tr_line(note))
+        self.report({"INFO"}, tr_line(f"Saved as {path}"))
         return {"FINISHED"}
 
 

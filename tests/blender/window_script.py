@@ -16,6 +16,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).parent))
 import installed
+from large_file import large_file
 
 installed.prepare_paths()
 job_operator, jobs = installed.module("ops.job_operator"), installed.module("session.job")
@@ -219,19 +220,6 @@ def escape_while_keys_are_set() -> Steps:
     yield 0.3
 
 
-def large_file() -> str:
-    """A .bvh of 8 joints and 8,000 frames."""
-    path = Path(FOLDER) / "large.bvh"
-    lines, channels = ["HIERARCHY"], "CHANNELS 3 Zrotation Xrotation Yrotation"
-    for index in range(8):
-        word, offset = ("JOINT", "0 10 0") if index else ("ROOT", "0 90 0")
-        lines += [f"{word} j{index}", "{", f"OFFSET {offset}", channels]
-    lines += ["}"] * 8 + ["MOTION", "Frames: 8000", "Frame Time: 0.01"]
-    lines += [" ".join([f"{0.01 * row:.2f}"] * 24) for row in range(8000)]
-    path.write_text("\n".join(lines))
-    return str(path)
-
-
 def confirm_dialog() -> Steps:
     """Enter, with the pointer on the dialog that has just come up under it."""
     window = bpy.context.window_manager.windows[0]
@@ -259,7 +247,7 @@ def begin_import(path: str) -> Steps:
 
 def import_dropped() -> Steps:
     before = [item.name for item in bpy.data.objects]
-    yield from begin_import(large_file())
+    yield from begin_import(large_file(Path(FOLDER)))
     num_halfway = 0
     while not any(item.animation_data for item in bpy.data.objects):
         num_halfway += len(bpy.data.actions)
@@ -278,7 +266,7 @@ def import_dropped() -> Steps:
 def import_escaped() -> Steps:
     before = [item.name for item in bpy.data.objects]
     active = bpy.context.view_layer.objects.active.name
-    yield from begin_import(large_file())
+    yield from begin_import(large_file(Path(FOLDER)))
     yield from until(lambda: len(bpy.data.actions) == 1)
     assert len(bpy.data.armatures) == 1
     yield from press_escape()
@@ -291,7 +279,7 @@ def import_escaped() -> Steps:
 
 def import_undone_meanwhile() -> Steps:
     before = [item.name for item in bpy.data.objects]
-    yield from begin_import(large_file())
+    yield from begin_import(large_file(Path(FOLDER)))
     yield from until(lambda: len(bpy.data.actions) == 1)
     undo()
     yield 0.5
@@ -310,7 +298,7 @@ def until_imported(before: list[str]) -> Steps:
 
 def import_chosen() -> Steps:
     """Through File > Import and the file browser."""
-    path, before = large_file(), [item.name for item in bpy.data.objects]
+    path, before = large_file(Path(FOLDER)), [item.name for item in bpy.data.objects]
     with bpy.context.temp_override(**view()):
         bpy.ops.ed.undo_push(message="before")
         bpy.ops.sparse_mocap.import_bvh("INVOKE_DEFAULT", True)
@@ -345,7 +333,7 @@ def dropped() -> Steps:
     """As if the file were dropped on the viewport."""
     if not hasattr(bpy.ops.wm, "drop_import_file") or not hasattr(bpy.types, "FileHandler"):
         return
-    path, before = large_file(), [item.name for item in bpy.data.objects]
+    path, before = large_file(Path(FOLDER)), [item.name for item in bpy.data.objects]
     window = bpy.context.window_manager.windows[0]
     window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=400, y=400)
     yield 0.2

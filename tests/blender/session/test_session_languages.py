@@ -52,6 +52,7 @@ NOT_TRANSLATED = {
     "Built a database of {}{}",
     "Imported {} files, each on its own armature{}",
     'Imported "{}": {}, {}',
+    "Trained a model on {} clips{}",
     "and {} more warnings",
     "None",
 }
