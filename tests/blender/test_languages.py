@@ -12,7 +12,7 @@ import rigs
 from support import Skipped, addon, choose_files, error_of, raised, settings
 
 NOT_SHOWN = {
-    *("directory", "index"),  # what file browsers and buttons fill in
+    *("directory", "index", "training"),  # what file browsers and buttons fill in, and a group
     "The options of a sensor protocol; the tooltip shows them.",  # says those of the protocol
 }
 
