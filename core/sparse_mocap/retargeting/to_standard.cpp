@@ -31,9 +31,12 @@ class Limb {
 
   // R_world_upper with the twist that lets the hinge reach `lower` (a direction in the world).
   // Two twists do, half a turn apart: that in which the limb bends forward, unless the frame before
-  // was near the other. A nearly straight limb has no clear plane, so there the twist fades out.
+  // was near the other and the limb is only a little overstretched. Files turn a thigh about itself
+  // where a knee is bent far, and the knee the other way. A nearly straight limb has no clear
+  // plane, so there the twist fades out.
   Mat3 twisted(const Mat3& R_world_upper, const Vec3& lower) {
     constexpr double kForward_rad = 20.0 * kRadiansPerDegree;  // how much nearer that one counts
+    constexpr double kOverstretched_rad = 60.0 * kRadiansPerDegree;  // at most
     const double kClearPlane = std::pow(std::sin(5.0 * kRadiansPerDegree), 4);
     const Vec3 l = R_world_upper.transpose() * lower;
     // After a twist t the part of `lower` across the hinge's plane is across cos t - flexion sin t;
@@ -46,6 +49,7 @@ class Limb {
     const double middle = -std::atan2(flexion, across);
     const double half = std::atan2(std::sqrt(clear), held);
     const bool is_forward =
+        std::atan2(bend, l.dot(upper_bone_)) > kOverstretched_rad ||
         std::abs(turn_to(middle + half)) - kForward_rad <= std::abs(turn_to(middle - half));
     twist_ = std::remainder(is_forward ? middle + half : middle - half, 2.0 * kPi) * clear * clear /
              (clear * clear + kClearPlane);

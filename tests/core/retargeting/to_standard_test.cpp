@@ -51,6 +51,37 @@ TEST(ToStandard, ScalesTheRootsWayWithTheLegs) {
     EXPECT_LT((on_small.root_positions[t] - 0.8 * motion.root_positions[t]).norm(), 1e-9);
 }
 
+// A squat; from frame to frame the knees bend by up to 8 degrees.
+Motion squatting_motion(int frames) {
+  const Skeleton skeleton = template_skeleton();
+  Motion motion = testing::resting_motion(skeleton, frames, 60.0);
+  for (int t = 0; t < frames; ++t) {
+    const double depth = std::sin(kPi * (t + 1.0) / (frames + 1.0));
+    const double knee = 150.0 * kRadiansPerDegree * depth;
+    for (const auto& [thigh, shank] : {std::pair{lfemur, ltibia}, std::pair{rfemur, rtibia}}) {
+      motion.rotation(t, thigh) = Quat(Eigen::AngleAxisd(-0.5 * knee, Vec3::UnitX()));
+      motion.rotation(t, shank) = Quat(joint_rotation(skeleton.joint(shank), &knee));
+    }
+  }
+  return motion;
+}
+
+TEST(ToStandard, MendsThighsThatAFileTurnsAboutThemselvesWhereKneesAreBentFar) {
+  const Motion truth = squatting_motion(60);
+  Motion file = truth;
+  for (int t = 20; t < 40; ++t) {
+    const Vec3 along = truth.skeleton.joint(lfemur).bone.normalized();
+    file.rotation(t, lfemur) = truth.rotation(t, lfemur) * Quat(Eigen::AngleAxisd(kPi, along));
+    file.rotation(t, ltibia) = truth.rotation(t, ltibia).conjugate();
+  }
+  ASSERT_LT(worst_position_error_m(file, truth), 1e-3);  // hinges are not quite across the bones
+  const Motion mended = to_standard(file, map_skeleton(file.skeleton), truth.skeleton);
+  EXPECT_LT(worst_position_error_m(mended, truth), 2e-3);
+  for (int t = 0; t < truth.num_frames(); ++t)
+    for (const auto joint : {lfemur, ltibia})
+      EXPECT_LT(mended.rotation(t, joint).angularDistance(truth.rotation(t, joint)), 0.01) << t;
+}
+
 // How many frames are left, and whether it is said.
 void expect_dropped(const Motion& motion, int dropped) {
   std::vector<std::string> warnings;
