@@ -34,6 +34,7 @@ MOVEMENTS = (
     "fast turns, %",
     "step, cm",
     "feet, cm/s",
+    "floor, cm",
     "sunk, %",
     "jerk ratio",
     "jumps",
@@ -59,11 +60,13 @@ README come from here.
   quality: each frame from the whole take.
 - Oracle: the nearest pose in the database, chosen by looking at the truth.
 - Movement: turn of a wrist from frame to frame, frames into which a joint turns over 60°, the
-  largest step of a joint within a frame, speed of the feet while they stand in truth, ankles more
-  than 2 cm lower than they ever are in truth, jerk as a part of the truth's, clips in which a joint
-  steps three times as far as in truth, drift of root and heading after 2 s, and precision and
-  recall of the warning that a reconstruction is no better than the clip's own mean pose. All are
-  means over the clips but the largest step and the number of jumps.
+  largest step of a joint within a frame, speed of the feet while they stand in truth, how much
+  higher or lower ankles are then than true ones (performers' ankles and recordings' floors differ,
+  which no sensor tells), ankles more than 2 cm lower than they ever are in truth on the same floor,
+  jerk as a part of the truth's (mean / largest of a clip), clips in which a joint steps three times
+  as far as in truth, drift of root and heading after 2 s, and precision and recall of the warning
+  that a reconstruction is no better than the clip's own mean pose. All are means over the clips but
+  the largest step, the largest jerk ratio and the number of jumps.
 """
 
 
@@ -143,10 +146,12 @@ def _movement_cells(moved: dict[str, Any], figures: dict[str, Any] | None) -> li
         f"{100.0 * moved['fast_turns']:.1f}",
         f"{moved['largest_step_cm']:.0f}",
     ]
-    cells += [_told(moved["standing_cmps"], ".1f"), f"{100.0 * moved['under_floor']:.1f}"]
+    cells += [_told(moved["standing_cmps"], ".1f"), f"{moved['floor_offset_cm']:.1f}"]
+    cells += [f"{100.0 * moved['under_floor']:.1f}"]
     if figures is None:
         return [*cells, "1.0", "0", "", "", ""]
-    cells += [f"{figures['jerk_ratio']:.1f}", str(figures["jumps"]["over_3_true_steps"])]
+    jerk = f"{figures['jerk_ratio']:.1f} / {figures['largest_jerk_ratio']:.1f}"
+    cells += [jerk, str(figures["jumps"]["over_3_true_steps"])]
     cells += [_told(moved[f"{name}_after_2_s_{unit}"], ".0f") for name, unit in DRIFTS]
     warned = figures["warnings"].values()
     return [*cells, " / ".join(_told(share, ".2f") for share in warned)]

@@ -21,6 +21,7 @@ MOVEMENT = {
     "fast_turns": 0.012,
     "largest_step_cm": 30.4,
     "standing_cmps": 11.06,
+    "floor_offset_cm": 1.25,
     "under_floor": 0.0,
 }
 DRIFTS = {"root_after_2_s_cm": 25.6, "heading_after_2_s_deg": None}
@@ -39,6 +40,7 @@ def found(scenario: int, gyroscopes: bool, mean_cm: float) -> dict[str, Any]:
             "class_errors_cm": dict.fromkeys(CLASSES, mean_cm + index),
             "movement": {} if method == "oracle" else MOVEMENT | DRIFTS,
             "jerk_ratio": 1.24,
+            "largest_jerk_ratio": 1.96,
             "jumps": {"over_50_cm": 0, "over_3_true_steps": 2},
             "warnings": {"precision": 0.5, "recall": None},
         }
@@ -67,8 +69,8 @@ def test_the_document_has_every_figure_and_no_path() -> None:
     assert "| oracle, with gyroscopes" not in text
     assert "| `path_regression`, live quality | 5.04 | 2.00 | 3.46 | 12.3 | 0.123 | 75 |" in lines
     assert "| oracle | 9.00 | 2.00 | 3.46 | | 0.123 | |" in lines
-    assert "| truth | 2.5 | 1.2 | 30 | 11.1 | 0.0 | 1.0 | 0 | | | |" in lines
-    moved = "2.5 | 1.2 | 30 | 11.1 | 0.0 | 1.2 | 2 | 26 | - | 0.50 / -"
+    assert "| truth | 2.5 | 1.2 | 30 | 11.1 | 1.2 | 0.0 | 1.0 | 0 | | | |" in lines
+    moved = "2.5 | 1.2 | 30 | 11.1 | 1.2 | 0.0 | 1.2 / 2.0 | 2 | 26 | - | 0.50 / -"
     assert f"| `path_regression`, best quality | {moved} |" in lines
     assert text.count("| walk | ") == 4
     assert "`mocap`; 2 clips performed" in text

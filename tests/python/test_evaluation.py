@@ -233,7 +233,7 @@ def test_warnings_are_right_where_a_held_pose_is_better() -> None:
     def clip(mean_cm: float, match: str) -> TestClip:
         held = ClipResult(np.array([10.0]), np.zeros(1), 0.0)
         tried = ClipResult(np.array([mean_cm]), np.zeros(1), 0.1, match=match)
-        movement = Movement(np.zeros(1), 0.0, 1.0, 1.0, 0.0, {}, {})
+        movement = Movement(np.zeros(1), 0.0, 1.0, 1.0, 0.0, 0.0, {}, {})
         return TestClip("a", "a", "a", 1, 0, 0.1, movement, {"m": tried, "mean pose": held})
 
     told = [(12.0, "poor"), (13.0, "good"), (14.0, "poor"), (5.0, "poor"), (6.0, "fair")]

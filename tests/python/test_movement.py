@@ -11,6 +11,7 @@ from sparse_mocap.evaluation.movement import (
     World,
     drift_of_headings_deg,
     drift_of_paths_cm,
+    floor_offset_m,
     headings_rad,
     largest_step_cm,
     share_of_fast_turns,
@@ -66,6 +67,17 @@ def test_feet_are_measured_while_they_stand_in_truth() -> None:
     stands[3:, 1] = True  # one further step, of 100 cm/s
     assert standing_speed_cmps(ankles, stands, RATE_HZ) == pytest.approx(50.0)
     assert np.isnan(standing_speed_cmps(ankles, np.zeros_like(stands), RATE_HZ))
+
+
+def test_floors_differ_by_the_median_while_feet_stand() -> None:
+    true = np.full((5, 2, 3), 0.1)
+    ankles = true + np.array([0.0, -0.03, 0.0])
+    ankles[4] = 0.5  # no foot stands
+    ankles[0, 0, 1] = 0.02  # sunk
+    stands = np.array([[True, True]] * 4 + [[False, False]])
+    assert floor_offset_m(ankles, true, stands) == pytest.approx(-0.03)
+    assert floor_offset_m(ankles, true, np.zeros_like(stands)) == 0.0
+    assert share_under_floor(ankles, 0.1 - 0.03) == pytest.approx(1 / 10)
 
 
 def test_an_ankle_is_under_the_floor_two_centimetres_below_the_lowest_true_one() -> None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from .. import Clip, Motion, MotionDatabase
 from ..table_errors import TableError
 from .metrics import (
+    CM,
     euler_errors_deg,
     frame_errors,
     interpolated,
@@ -23,6 +24,7 @@ from .movement import (
     Movement,
     World,
     drifts,
+    floor_offset_m,
     headings_rad,
     largest_step_cm,
     share_of_fast_turns,
@@ -128,12 +130,15 @@ class Truth:
             self.world.heading_rad[is_known],
         )
         root_drift, heading_drift = drifts(true, world, self.rate_hz)
+        stands = self.stands[is_known]
+        offset_m = floor_offset_m(world.ankles, true.ankles, stands)
         return Movement(
             turns_deg(rotations).mean(axis=0),
             share_of_fast_turns(rotations),
             largest_step_cm(positions),
-            standing_speed_cmps(world.ankles, self.stands[is_known], self.rate_hz),
-            share_under_floor(world.ankles, self.lowest_ankle_m),
+            standing_speed_cmps(world.ankles, stands, self.rate_hz),
+            CM * offset_m,
+            share_under_floor(world.ankles, self.lowest_ankle_m + offset_m),
             root_drift,
             heading_drift,
         )

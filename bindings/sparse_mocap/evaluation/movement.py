@@ -22,6 +22,7 @@ __all__ = [
     "drift_of_headings_deg",
     "drift_of_paths_cm",
     "drifts",
+    "floor_offset_m",
     "headings_rad",
     "largest_step_cm",
     "share_of_fast_turns",
@@ -60,6 +61,8 @@ class Movement:
     """See share_of_fast_turns()."""
     largest_step_cm: float
     standing_cmps: float
+    floor_offset_cm: float
+    """See floor_offset_m()."""
     under_floor: float
     root_drift_cm: dict[int, float]
     """After DRIFT_AFTER_S; NaN where the motion is shorter."""
@@ -109,8 +112,21 @@ def standing_speed_cmps(ankles: Floats, stands: NDArray[np.bool_], rate_hz: floa
     return CM * float(speeds[both].mean()) if both.any() else float("nan")
 
 
+def floor_offset_m(ankles: Floats, true_ankles: Floats, stands: NDArray[np.bool_]) -> float:
+    """Returns how much higher ankles (T, 2, 3) are than true ones while the feet stand, (T, 2).
+
+    The median; 0 where none ever stands. Recordings differ by several centimetres in where their
+    floor is, and performers in how high their ankles are above it, which no sensor tells.
+    """
+    higher = (ankles[..., 1] - true_ankles[..., 1])[stands]
+    return float(np.median(higher)) if higher.size else 0.0
+
+
 def share_under_floor(ankles: Floats, lowest_m: float) -> float:
-    """Returns the share of ankles (T, 2, 3) more than 2 cm lower than true ankles ever are."""
+    """Returns the share of ankles (T, 2, 3) more than 2 cm lower than true ankles ever are.
+
+    Both stand on the same floor: lowest_m is that of true ankles plus floor_offset_m().
+    """
     return float((ankles[..., 1] < lowest_m - UNDER_FLOOR_M).mean())
 
 

@@ -164,6 +164,7 @@ class Evaluation:
             "fast_turns": _mean([m.fast_turns for m in known]),
             "largest_step_cm": max(m.largest_step_cm for m in known),
             "standing_cmps": _mean([m.standing_cmps for m in known]),
+            "floor_offset_cm": _mean([abs(m.floor_offset_cm) for m in known]),
             "under_floor": _mean([m.under_floor for m in known]),
         }
         if method is not None:

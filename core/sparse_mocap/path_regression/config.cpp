@@ -36,7 +36,7 @@ Config live_config() {
                                 {{-0.56, 0.08, -0.88, kLiveLookAhead_s}}};
   config.fit.lever_m = 0.2;
   config.fit.step = 2.0;
-  config.fit.smoothness = 12.0;
+  config.fit.smoothness = 16.0;
   return config;
 }
 
@@ -54,7 +54,7 @@ Config whole_take_config() {
           {{side * centre_s, sigma_s, side * centre_s - 0.24, side * centre_s + 0.24}});
   config.fit.lever_m = 0.2;
   config.fit.step = 3.0;
-  config.fit.smoothness = 4.0;
+  config.fit.smoothness = 8.0;
   config.wide_spread_m = 0.07;
   return config;
 }
@@ -114,6 +114,8 @@ const OptionTable<Config>& options() {
                   "weight of the root's retrieved turning")
           .number("root_smoothness", &Config::fit, &FitWeights::root_smoothness, 0.0, 1e6,
                   "weight of even movement of the root")
+          .number("hinge_weight", &Config::fit, &FitWeights::hinge, 0.0, 1e6,
+                  "how firmly knees and elbows stay within the range in which they bend")
           .integer("max_iterations", &Config::max_iterations, 1, 10'000,
                    "steps of the fit, at most");
   return table;

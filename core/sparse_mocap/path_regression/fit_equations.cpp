@@ -54,6 +54,8 @@ FitEquations::FitEquations(const Skeleton& skeleton, double frame_time_s, const 
       first_free_(first_free),
       num_angles_(skeleton.num_angles()),
       seen_(frames.size()) {
+  for (int j = 0; j < skeleton.num_joints(); ++j)
+    if (const auto range = hinge_range(skeleton.joint(j).name)) hinges_.push_back({j, *range});
   const int n = static_cast<int>(frames.size());
   if (with_system) system_.emplace(n - first_free, num_angles_ + static_cast<int>(kRootUnknowns));
   const auto each_frame = [&](int begin, const auto& work) {
@@ -81,6 +83,7 @@ void FitEquations::see(int t) {
 void FitEquations::add_frame(int t) {
   add_pose_terms(t);
   add_inclination(t);
+  add_hinges(t);
   add_root_terms(t);
   for (const std::size_t side : {0U, 1U}) add_foot(t, side);
   add_turning(t);
@@ -176,6 +179,24 @@ void FitEquations::add_inclination(int t) {
       jacobian.leftCols(num_angles_) = kUp.transpose() * (seen.jacobian.middleRows(3 * joint, 3) -
                                                           seen.jacobian.middleRows(3 * parent, 3));
     add_small(weights_.inclination, residual, {{t, std::move(jacobian)}});
+  }
+}
+
+// Knees and elbows that bend farther than people's are drawn back; the last degrees are for what
+// recordings have.
+void FitEquations::add_hinges(int t) {
+  constexpr double kMargin_rad = 10.0 * kRadiansPerDegree;
+  for (const auto& [joint, range] : hinges_) {
+    const Mat3& R = frames_[static_cast<std::size_t>(t)].rotations[static_cast<std::size_t>(joint)];
+    const double middle = 0.5 * (range.least_rad + range.most_rad);
+    double angle = 0.0;
+    joint_angles(skeleton_.joint(joint), R, &middle, &angle);
+    const double beyond =
+        angle - std::clamp(angle, range.least_rad + kMargin_rad, range.most_rad - kMargin_rad);
+    if (beyond == 0.0) continue;
+    Eigen::MatrixXd jacobian = no_share(1);
+    jacobian(0, skeleton_.angle_begin(joint)) = 1.0;
+    add_small(weights_.hinge, Eigen::VectorXd::Constant(1, beyond), {{t, std::move(jacobian)}});
   }
 }
 

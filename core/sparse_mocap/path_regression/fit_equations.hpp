@@ -9,6 +9,7 @@
 
 #include "sparse_mocap/path_regression/banded_system.hpp"
 #include "sparse_mocap/path_regression/take_fit.hpp"
+#include "sparse_mocap/reconstruction/human_limits.hpp"
 
 namespace sparse_mocap::path_regression {
 
@@ -35,6 +36,10 @@ class FitEquations {
     std::array<double, BandedSystem::kReach + 1> products{};
     Eigen::VectorXd residual;
   };
+  struct Hinge {
+    int joint;
+    HingeRange range;
+  };
   struct Share {  // of a frame in a small residual
     int frame;
     Eigen::MatrixXd jacobian;
@@ -45,6 +50,7 @@ class FitEquations {
   void add_pose_terms(int t);
   double evenness(int t) const;
   void add_inclination(int t);
+  void add_hinges(int t);
   void add_root_terms(int t);
   double root_turn_weight(int t) const;
   void add_foot(int t, std::size_t side);
@@ -65,6 +71,7 @@ class FitEquations {
   std::span<const FittedFrame> frames_;
   std::span<const FrameTarget> targets_;
   int first_free_, num_angles_;
+  std::vector<Hinge> hinges_;
   std::vector<Seen> seen_;
   double value_ = 0.0;
   std::optional<BandedSystem> system_;

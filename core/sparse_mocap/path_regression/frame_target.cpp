@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/path_regression/frame_target.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sparse_mocap/motion/standard_skeleton.hpp"
@@ -15,7 +16,26 @@ bool is_on_limb(const Site& site) {
          site.carrier != head;
 }
 
+double doubt(double agreement) { return 1.0 / std::max(agreement, 1e-6) - 1.0; }
+
 }  // namespace
+
+void even_agreements(std::span<FrameTarget> targets, std::size_t reach) {
+  std::vector<double> doubts;
+  for (const auto& target : targets) doubts.push_back(doubt(target.agreement));
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    const std::size_t begin = t - std::min(t, reach);
+    const std::size_t end = std::min(targets.size(), t + reach + 1);
+    double sum = 0.0;
+    for (std::size_t i = begin; i < end; ++i) sum += doubts[i];
+    targets[t].agreement = 1.0 / (1.0 + sum / static_cast<double>(end - begin));
+  }
+}
+
+double evened_agreement(double agreement, double before) {
+  constexpr double kNew = 0.4;  // share of the frame itself
+  return 1.0 / (1.0 + kNew * doubt(agreement) + (1.0 - kNew) * doubt(before));
+}
 
 Eigen::VectorXd pose_points(const JointTransforms& pose, double lever_m) {
   const auto n = static_cast<Eigen::Index>(pose.end.size());

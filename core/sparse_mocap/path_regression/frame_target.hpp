@@ -51,4 +51,11 @@ struct FrameTarget {
   retrieval::StandingFeet feet;
 };
 
+// Poses that agree in one frame alone, between frames in which they do not, do so by chance, and
+// would pull that frame out of its neighbours. The doubt (1 / agreement - 1) of each frame becomes
+// the mean over the frames within `reach` of it.
+void even_agreements(std::span<FrameTarget> targets, std::size_t reach);
+// The same live: of a frame's agreement and the evened one of the frame before.
+double evened_agreement(double agreement, double before);
+
 }  // namespace sparse_mocap::path_regression

@@ -48,6 +48,9 @@ PoseEstimate LiveReconstructor::solve_next() {
   RetrievedFrame retrieved = solver_.retrieve(graph_.paths(), window, waiting_.front());
   const double time_s = waiting_.front().time_s;
   waiting_.pop_front();
+  if (!targets_.empty())
+    retrieved.target.agreement =
+        evened_agreement(retrieved.target.agreement, targets_.back().agreement);
   if (frames_.size() > BandedSystem::kReach) {
     frames_.erase(frames_.begin());
     targets_.erase(targets_.begin());

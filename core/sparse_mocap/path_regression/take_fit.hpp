@@ -35,6 +35,7 @@ struct FitWeights {
   double root_turn = 30.0;    // and turns as in them
   double root_height = 5.0;
   double root_smoothness = 2.0;  // second differences of the root's position and heading
+  double hinge = 5.0;            // knees and elbows bend within their range
 };
 
 // Fits the frames of a take, or its last ones, all at once: the pose of each frame to what was

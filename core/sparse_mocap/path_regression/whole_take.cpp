@@ -2,6 +2,7 @@
 #include "sparse_mocap/path_regression/whole_take.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "sparse_mocap/base/ordered_work.hpp"
@@ -41,6 +42,7 @@ std::vector<Result> WholeTakeReconstructor::in_parallel(std::size_t count, const
 // The whole take in one fit.
 std::vector<PoseEstimate> WholeTakeReconstructor::fitted(
     const std::vector<Reading>& take, std::vector<RetrievedFrame> retrieved) const {
+  constexpr double kEvened_s = 0.08;
   std::vector<FittedFrame> frames;
   std::vector<FrameTarget> targets;
   for (auto& frame : retrieved) {
@@ -48,6 +50,7 @@ std::vector<PoseEstimate> WholeTakeReconstructor::fitted(
     frames.push_back(start_of(skeleton(), 1.0 / rate_hz(), targets.back(),
                               frames.empty() ? nullptr : &frames.back()));
   }
+  even_agreements(targets, static_cast<std::size_t>(std::lround(kEvened_s * rate_hz())));
   const Config& config = solver_.config();
   TakeFit(skeleton(), 1.0 / rate_hz(), config.fit, num_threads_)
       .fit(frames, targets, 0, config.max_iterations);

@@ -132,6 +132,12 @@ void HumanLimits::apply(PoseEstimate& estimate) {
   before_ = estimate.rotations;
 }
 
+std::optional<HingeRange> hinge_range(std::string_view joint) {
+  const NamedLimit* limit = limit_of(joint);
+  if (limit == nullptr || limit->least_deg == limit->most_deg) return std::nullopt;
+  return HingeRange{limit->least_deg * kRadiansPerDegree, limit->most_deg * kRadiansPerDegree};
+}
+
 std::unique_ptr<LiveMethod> within_human_limits(std::unique_ptr<LiveMethod> method) {
   return std::make_unique<BoundedLive>(std::move(method));
 }

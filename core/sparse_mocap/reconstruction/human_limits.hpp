@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "sparse_mocap/reconstruction/method.hpp"
@@ -33,6 +35,14 @@ class HumanLimits {
   std::vector<Limit> limits_;
   std::vector<Quat> before_;
 };
+
+// How far a joint with one axis turns, rad.
+struct HingeRange {
+  double least_rad = 0.0, most_rad = 0.0;
+};
+
+// That of a joint of the standard skeleton, by its name; nothing: any, or it has more axes.
+std::optional<HingeRange> hinge_range(std::string_view joint);
 
 // The same methods, their poses within the limits.
 std::unique_ptr<LiveMethod> within_human_limits(std::unique_ptr<LiveMethod> method);

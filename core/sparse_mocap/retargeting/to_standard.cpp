@@ -36,7 +36,7 @@ class Limb {
   // plane, so there the twist fades out.
   Mat3 twisted(const Mat3& R_world_upper, const Vec3& lower) {
     constexpr double kForward_rad = 20.0 * kRadiansPerDegree;  // how much nearer that one counts
-    constexpr double kOverstretched_rad = 60.0 * kRadiansPerDegree;  // at most
+    constexpr double kOverstretched_rad = 90.0 * kRadiansPerDegree;  // at most
     const double kClearPlane = std::pow(std::sin(5.0 * kRadiansPerDegree), 4);
     const Vec3 l = R_world_upper.transpose() * lower;
     // After a twist t the part of `lower` across the hinge's plane is across cos t - flexion sin t;

@@ -95,5 +95,19 @@ TEST(InclinationTarget, LeavesSilentSensorsOut) {
   EXPECT_TRUE(inclination_target(kSkeleton, Reading(1), signals).joints.empty());
 }
 
+TEST(Agreement, OfOneFrameAloneCountsLittle) {
+  std::vector<FrameTarget> targets(9);
+  for (auto& target : targets) target.agreement = 0.2;
+  targets[4].agreement = 1.0;
+  even_agreements(targets, 2);
+  EXPECT_NEAR(targets[0].agreement, 0.2, 1e-12);
+  // Its doubt is 0, that of the four others is 4: the mean is 3.2.
+  EXPECT_NEAR(targets[4].agreement, 1.0 / 4.2, 1e-12);
+  EXPECT_NEAR(targets[6].agreement, 1.0 / 4.2, 1e-12);
+  EXPECT_NEAR(targets[7].agreement, 0.2, 1e-12);
+  EXPECT_NEAR(evened_agreement(1.0, 0.2), 1.0 / (1.0 + 0.6 * 4.0), 1e-12);
+  EXPECT_NEAR(evened_agreement(0.5, 0.5), 0.5, 1e-12);
+}
+
 }  // namespace
 }  // namespace sparse_mocap::path_regression

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "sparse_mocap/motion/heading.hpp"
@@ -41,7 +42,8 @@ FitWeights all_weights() {
           .root_step = 2.0,
           .root_turn = 0.9,
           .root_height = 4.0,
-          .root_smoothness = 0.6};
+          .root_smoothness = 0.6,
+          .hinge = 2.0};
 }
 
 struct Take {
@@ -77,6 +79,19 @@ Take random_take(Random& random, std::size_t length, double apart) {
 // How much of a foot's certainty counts.
 double shown(double certainty) { return certainty * certainty * (3.0 - 2.0 * certainty); }
 
+// By how much knees and elbows bend too far or the wrong way, squared.
+double beyond_squared(const JointRotations& rotations) {
+  double sum = 0.0;
+  for (const auto& [joint, most_deg] : {std::pair{ltibia, 160.0}, std::pair{rtibia, 160.0},
+                                        std::pair{lradius, 150.0}, std::pair{rradius, 150.0}}) {
+    const Eigen::AngleAxisd turn(rotations[static_cast<std::size_t>(joint)]);
+    const Vec3 hinge = kSkeleton.joint(joint).R_joint_axes * Vec3::UnitX();
+    const double angle = turn.angle() * turn.axis().dot(hinge);
+    sum += std::pow(angle - std::clamp(angle, 0.0, most_deg * kRadiansPerDegree), 2);
+  }
+  return sum;
+}
+
 // The terms written out one by one.
 double expected_value(const Take& take, const FitWeights& w, std::size_t first_free) {
   std::vector<Eigen::VectorXd> x;
@@ -100,6 +115,7 @@ double expected_value(const Take& take, const FitWeights& w, std::size_t first_f
         std::pow(pose.end[lradius].y() - pose.end[lhumerus].y() - target.inclination.rises_m[0], 2);
     sum += w.inclination *
            std::pow(pose.end[rtibia].y() - pose.end[rfemur].y() - target.inclination.rises_m[1], 2);
+    sum += w.hinge * beyond_squared(take.frames[t].rotations);
     sum += w.root_height * std::pow(p[t].y() - target.root.height_m, 2);
     for (std::size_t side = 0; side < 2; ++side) {
       const auto row = static_cast<Eigen::Index>(side);
@@ -232,7 +248,9 @@ TEST(TakeFit, FindsAPoseWithItsTwists) {
   take.targets = {target};
   take.frames = {
       {turned(kSkeleton, pose, random.column(kNumStandardAngles, 0.4)), Vec3::Zero(), 0.0}};
-  TakeFit(kSkeleton, kDt, {}).fit(take.frames, take.targets, 0, 50);
+  FitWeights weights;
+  weights.hinge = 0.0;  // the pose bends knees either way
+  TakeFit(kSkeleton, kDt, weights).fit(take.frames, take.targets, 0, 50);
   for (std::size_t j = 0; j < pose.size(); ++j)
     EXPECT_LT((take.frames[0].rotations[j] - pose[j]).norm(), 1e-4) << j;
   const FittedFrame start = start_of(kSkeleton, kDt, target, nullptr);
@@ -241,6 +259,23 @@ TEST(TakeFit, FindsAPoseWithItsTwists) {
 }
 
 // The retrieved root says that it moves, a foot says that it stands: the foot wins.
+TEST(TakeFit, DrawsAKneeBackThatBendsForwards) {
+  Eigen::VectorXd angles = Eigen::VectorXd::Zero(kNumStandardAngles);
+  angles[kSkeleton.angle_begin(ltibia)] = -40.0 * kRadiansPerDegree;
+  std::vector<FittedFrame> frames{{joint_rotations(kSkeleton, angles), Vec3::Zero(), 0.0}};
+  std::vector<FrameTarget> targets(1);
+  targets[0].points = pose_points(posed(frames[0].rotations), 0.2);
+  const auto bent_rad = [&](double hinge) {
+    FitWeights weights{.lever_m = 0.2, .inclination = 0.0, .foot_height = 0.0};
+    weights.hinge = hinge;
+    auto fitted = frames;
+    TakeFit(kSkeleton, kDt, weights).fit(fitted, targets, 0, 50);
+    return std::sqrt(beyond_squared(fitted[0].rotations));
+  };
+  EXPECT_NEAR(bent_rad(0.0), 40.0 * kRadiansPerDegree, 1e-3);
+  EXPECT_LT(bent_rad(5.0), 5.0 * kRadiansPerDegree);
+}
+
 TEST(TakeFit, KeepsAStandingFootInPlace) {
   const auto pose = joint_rotations(kSkeleton, Eigen::VectorXd::Zero(kNumStandardAngles));
   Take take;
