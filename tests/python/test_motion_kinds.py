@@ -140,6 +140,23 @@ def test_a_limb_that_bends_all_around_turns_steadily(tmp_path: Path) -> None:
     assert np.degrees(2.0 * np.arccos(steps)).max() < 12.0
 
 
+def test_a_thigh_that_a_file_turns_half_round_where_the_knee_bends_far_is_turned_back(
+    tmp_path: Path,
+) -> None:
+    frames = []
+    for knee in 150.0 * np.sin(np.pi * np.arange(60) / 59):
+        way = -1.0 if knee > 110.0 else 1.0  # the same pose, the knee bent the other way
+        thigh = (0.0, -0.5 * knee, 180.0 if way < 0.0 else 0.0)
+        frames.append(((0.0, 94.0, 0.0), {"LeftHip": thigh, "LeftKnee": (0.0, way * knee, 0.0)}))
+    inspection = inspected(tmp_path, bvh(frames=frames))
+    assert inspection.limb_errors_deg["ltibia"][1] < 1.5
+    assert inspection.standard is not None
+    upper = inspection.standard.skeleton.names.index("lfemur")
+    turns = inspection.standard.rotations[:, upper]
+    steps = np.abs((turns[1:] * turns[:-1]).sum(1)).clip(0.0, 1.0)
+    assert np.degrees(2.0 * np.arccos(steps)).max() < 12.0
+
+
 def test_a_straight_knee_that_trembles_does_not_twist(tmp_path: Path) -> None:
     random = np.random.default_rng(4)
     frames = [
