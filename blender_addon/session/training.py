@@ -177,7 +177,7 @@ def _view(found: Any) -> LatentView:
 def _clips(
     motions: Any, choices: TrainingChoices, options: dict[str, str], *, with_phases: bool = True
 ) -> list[Any]:
-    clips = training_module().database_clips(
+    clips: list[Any] = training_module().database_clips(
         motions,
         classes=_parts(choices.classes),
         names=_parts(choices.clips),

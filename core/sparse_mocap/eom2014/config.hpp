@@ -29,7 +29,7 @@ struct Config {
   double reading_smoothing_s = 0.02;  // beside the low-pass that all readings pass
   int window_frames = 8;              // that the mapping sees before and after each
   int latent_dimensions = 5;
-  int iterations = 400;
+  int iterations = 1500;
   int hidden_units = 20;
   double weight_decay = 1.0;
 

@@ -64,7 +64,8 @@ Eigen::VectorXd minimum(const Function& function, const Eigen::VectorXd& start, 
   ceres::GradientProblemSolver::Options options;
   options.line_search_direction_type = ceres::LBFGS;
   options.line_search_type = ceres::WOLFE;
-  options.max_lbfgs_rank = 20;
+  options.max_lbfgs_rank = 50;
+  options.use_approximate_eigenvalue_bfgs_scaling = true;
   options.max_num_iterations = max_iterations;
   options.function_tolerance = tolerance;
   options.logging_type = ceres::SILENT;

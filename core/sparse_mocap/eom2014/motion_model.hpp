@@ -47,7 +47,7 @@ Latent principal_components(const MotionData& centred, int dimensions);
 
 struct LearningSettings {
   int dimensions = 5;
-  int max_iterations = 400;
+  int max_iterations = 1500;
 };
 
 // A model of full-body motion: latent points that poses and velocities are predicted from.
