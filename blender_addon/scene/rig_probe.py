@@ -70,7 +70,11 @@ class Probe:
     def found(self, followed: list[str], names: list[str]) -> list[Found]:
         """How the frames of the named bones move with those that may be followed."""
         tries = list(self._tries(followed, names))
-        return [self._one_found(number, name, followed, tries) for number, name in enumerate(names)]
+        inverses = np.linalg.inv(np.array([one.poses for one in tries]))
+        return [
+            self._one_found(number, name, followed, tries, inverses)
+            for number, name in enumerate(names)
+        ]
 
     def responses(self, names: list[str]) -> list[Floats]:
         """For each bone (3, 3) how it moves in the armature with its location's three numbers.
@@ -117,16 +121,19 @@ class Probe:
             pose.bones[name].matrix_basis = Matrix()
         self._update()
 
-    def _one_found(self, number: int, name: str, followed: list[str], tries: list[_Try]) -> Found:
-        frames = [one.frames[number] for one in tries]
-        errors = {-1: _change(frames)}
-        for other, candidate in enumerate(followed):
-            if candidate != name:
-                poses = [one.poses[other] for one in tries]
-                relative = [np.linalg.inv(a) @ b for a, b in zip(poses, frames, strict=True)]
-                errors[other] = _change(relative)
-        best = min(errors, key=lambda other: errors[other])
-        is_single = errors[best] < _SAME
+    def _one_found(
+        self, number: int, name: str, followed: list[str], tries: list[_Try], inverses: Floats
+    ) -> Found:
+        """How one frame moves; inverses (tries, followed, 4, 4): of the poses it may follow."""
+        frames = np.array([one.frames[number] for one in tries])
+        changes = _changes(inverses @ frames[:, None])
+        if name in followed:
+            changes[followed.index(name)] = np.inf
+        best = int(np.argmin(changes))
+        least, alone = float(changes[best]), float(_changes(frames[:, None])[0])
+        if alone <= least:
+            best, least = -1, alone
+        is_single = least < _SAME
         at_rest = np.array(self._armature.data.bones[name].matrix_local)
         T_followed = tries[0].poses[best] if is_single and best >= 0 else np.eye(4)
         return Found(
@@ -197,7 +204,7 @@ def unscaled(matrix: Floats) -> Floats:
     return plain
 
 
-def _change(matrices: list[Floats]) -> float:
-    """How far the rotations are from being one."""
-    first = matrices[0][:3, :3]
-    return max(float(np.abs(matrix[:3, :3] - first).max()) for matrix in matrices)
+def _changes(matrices: Floats) -> Floats:
+    """(n,) how far the rotations (tries, n, 4, 4) are from being the same in all tries."""
+    rotations = matrices[..., :3, :3]
+    return np.asarray(np.abs(rotations - rotations[0]).max(axis=(0, 2, 3)))

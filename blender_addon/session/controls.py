@@ -135,11 +135,12 @@ def _fk(rig: Controls, wanted: Floats, num_frames: int) -> tuple[_Poses, list[Fl
     poses = _Poses([], [])
     turns = []
     for control in rig.controls:
-        pose = np.broadcast_to(control.rest, (num_frames, 3, 3))
         if control.turned >= 0:
             pose = wanted[:, control.turned] @ control.rest
+        else:
+            pose = np.broadcast_to(control.rest, (num_frames, 3, 3))
         frame, place = _frame(control.follows, control.T_followed_frame, poses, num_frames)
-        turns.append(np.swapaxes(frame, -1, -2) @ pose)
+        turns.append(frame.transpose(0, 2, 1) @ pose)
         poses.rotations.append(pose)
         poses.places.append(place)
     return poses, turns
