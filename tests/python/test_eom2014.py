@@ -250,9 +250,9 @@ def test_what_cannot_be_used_is_refused_in_a_line(
         train("eom2014", [TrainingClip("squat", squat)], options=FEW)
 
 
-@pytest.mark.parametrize("movement", ["kickleft_01", "kickright_01"])
+@pytest.mark.parametrize("movement", ["kickleft_01", "kickright_01", "squat_01"])
 def test_another_movement_is_said_to_be_unknown(model: Model, library: Path, movement: str) -> None:
-    """Of a leg that kicks, and of one that stands meanwhile."""
+    """Of a leg that kicks, of one that stands meanwhile, and of a squat."""
     kick = to_standard(read_motion(library / f"ada_{movement}.bvh")[0])[0]
     found = solved(model, ankle_take(kick))
     assert any("unlike the clips" in note for note in found.notes)

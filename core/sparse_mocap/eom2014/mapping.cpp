@@ -95,6 +95,12 @@ class TypeMapping {
     return out;
   }
 
+  int likeliest_frame(Eigen::Index t) const {
+    Eigen::Index frame = 0;
+    posterior_.row(t).maxCoeff(&frame);
+    return static_cast<int>(frame);
+  }
+
   // What training frames have, by how likely they are.
   std::vector<ExtremityVote> extremities(const FrameRange& range) const {
     return extremity_votes(type_.extremities, posterior_.middleRows(range.begin, range.size()));
@@ -133,6 +139,7 @@ MappedFrames mapped(const TrainedModel& model, std::size_t site, const KnownRead
     weights.row(t).maxCoeff(&out.types[static_cast<std::size_t>(t)]);
   out.phases.resize(out.types.size());
   out.extremities.resize(out.types.size());
+  out.training_frames.resize(out.types.size());
   Eigen::MatrixXd outputs = Eigen::MatrixXd::Zero(range.size(), kNumPoseChannels + 3);
   for (std::size_t k = 0; k < model.types.size(); ++k) {
     const auto weight = weights.col(static_cast<Eigen::Index>(k));
@@ -146,6 +153,7 @@ MappedFrames mapped(const TrainedModel& model, std::size_t site, const KnownRead
       if (out.types[t] != static_cast<int>(k)) continue;
       const auto frame = range.begin + static_cast<Eigen::Index>(t);
       out.extremities[t] = votes[t];
+      out.training_frames[t] = mapping.likeliest_frame(range.begin + static_cast<Eigen::Index>(t));
       out.phases[t] = mapping.phases()[static_cast<std::size_t>(frame)];
       if (out.latent.rows() > 0)
         out.latent.row(static_cast<Eigen::Index>(t)) = mapping.latent().row(frame);

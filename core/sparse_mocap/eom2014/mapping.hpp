@@ -18,6 +18,7 @@ struct FrameRange {
 struct MappedFrames {
   std::vector<int> types;  // the likeliest, index in the model's
   std::vector<Phase> phases;
+  std::vector<int> training_frames;  // the likeliest on the path, of that type
   Eigen::MatrixXd latent;  // of that type, frames x dimensions; no rows for mappings to poses
   Eigen::MatrixXd poses;   // frames x kNumPoseChannels
   std::vector<ExtremityVote> extremities;  // what the training frames have

@@ -13,8 +13,7 @@ namespace sparse_mocap::eom2014 {
 namespace {
 
 // The stages of the paper, and what is beside them, from one phone.
-std::vector<Experiment::Variant> stages(const char* site) {
-  OptionValues many;
+std::vector<Experiment::Variant> stages(const char* site, OptionValues many) {
   if (find_site(site) != find_site("left_ankle")) many["site"] = site;
   OptionValues one = many;
   one["window_frames"] = "0";
@@ -38,8 +37,8 @@ std::vector<Experiment::Variant> stages(const char* site) {
 }
 
 Experiment experiment(const char* name, const char* help, std::vector<Experiment::ClipPair> pairs,
-                      const char* site = "left_ankle") {
-  return {name, help, stages(site), std::move(pairs), Experiment::Error::position_cm};
+                      const char* site = "left_ankle", const OptionValues& options = {}) {
+  return {name, help, stages(site, options), std::move(pairs), Experiment::Error::position_cm};
 }
 
 std::vector<Experiment::ClipPair> walks_of_a_performer() {

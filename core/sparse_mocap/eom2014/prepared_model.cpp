@@ -17,6 +17,11 @@ constexpr double kWorthSaying_rad = 5.0 * kRadiansPerDegree;
 constexpr double kUnlikeMisfit = 0.9;
 constexpr double kUnlikeTurning = 0.35;
 constexpr double kClearly = 0.8;  // smaller, of misfits of the other leg
+constexpr double kMoving = 0.2;   // of the mean turning in the clips: slower is standing
+// Frames in which the path stays or jumps: up to 21 % of walks by anybody, over 30 % of squats,
+// throws, grabs and kicks.
+constexpr double kMostAstray = 0.25;
+constexpr int kLongestStep = 3;
 
 std::string site_name(int site) {
   return std::string(all_sites().at(static_cast<std::size_t>(site)).name);
@@ -104,11 +109,21 @@ WornSensor PreparedModel::worn(const ReadingRows& readings, int most_compared,
                     std::to_string(std::lround(turn_rad / kRadiansPerDegree)) +
                     " degrees about the limb; this was corrected");
   compare_sites(converted, out.turn, most_compared, notes);
-  if (out.turn.misfit > kUnlikeMisfit || !is_moving(converted))
-    notes.emplace_back(
-        "the recording is unlike the clips that the model was trained on, so the motion is a "
-        "guess");
+  if (out.turn.misfit > kUnlikeMisfit || !is_moving(converted)) notes.emplace_back(kUnlikeNote);
   return out;
+}
+
+bool PreparedModel::follows_clips(const ReadingRows& readings, const MappedFrames& frames) const {
+  const double moving_radps = kMoving * known().rows.rightCols<3>().rowwise().norm().mean();
+  int num_moving = 0, num_astray = 0;
+  for (std::size_t t = 1; t < frames.types.size(); ++t) {
+    if (frames.types[t] != frames.types[t - 1]) continue;
+    if (readings.row(static_cast<Eigen::Index>(t)).tail<3>().norm() < moving_radps) continue;
+    const int step = frames.training_frames[t] - frames.training_frames[t - 1];
+    ++num_moving;
+    if (step < 1 || step > kLongestStep) ++num_astray;
+  }
+  return num_astray <= kMostAstray * num_moving;
 }
 
 MappedFrames PreparedModel::mapped(const ReadingRows& readings, const FrameRange& range) const {

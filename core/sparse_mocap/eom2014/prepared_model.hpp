@@ -10,6 +10,10 @@
 
 namespace sparse_mocap::eom2014 {
 
+// What is said of a recording of another motion.
+inline constexpr const char* kUnlikeNote =
+    "the recording is unlike the clips that the model was trained on, so the motion is a guess";
+
 // How a sensor is worn and what it tells, found from its readings.
 struct WornSensor {
   Units units;
@@ -39,6 +43,10 @@ class PreparedModel {
                   std::vector<std::string>& notes) const;
   // Whether a sensor moves as much as in the clips.
   bool is_moving(const ReadingRows& readings) const;
+
+  // Whether a movement is like the clips: its path goes through their frames as they follow each
+  // other, wherever the sensor moves. readings and frames are of the whole take.
+  bool follows_clips(const ReadingRows& readings, const MappedFrames& frames) const;
 
   // Poses from corrected readings, for the frames of a range; frames of the mapping alone.
   MappedFrames mapped(const ReadingRows& readings, const FrameRange& range) const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/eom2014/reconstructor.hpp"
 
+#include <algorithm>
+
 #include "sparse_mocap/eom2014/heading_rate.hpp"
 #include "sparse_mocap/motion/contacts.hpp"
 
@@ -32,6 +34,9 @@ std::vector<PoseEstimate> Reconstructor::solve(const std::vector<Reading>& take,
   // Sections 6.1 and 6.2: phases, latent points, poses.
   progress.report(1, kParts, "reconstructing");
   MappedFrames frames = model_.mapped(readings, {0, readings.rows()});
+  if (!model_.follows_clips(readings, frames) &&
+      std::find(notes_.begin(), notes_.end(), kUnlikeNote) == notes_.end())
+    notes_.emplace_back(kUnlikeNote);
   if (config.turns_by_gyroscope)
     frames.root_velocities.col(2) =
         turned_as_measured(frames.root_velocities.col(2), turning_of(take, worn), config.rate_hz);
