@@ -55,6 +55,9 @@ Config whole_take_config() {
   config.fit.lever_m = 0.2;
   config.fit.step = 3.0;
   config.fit.smoothness = 8.0;
+  // An elbow that passes through straight turns the upper arm over within a frame where it may not
+  // bend a little too far on the way.
+  config.fit.hinge = 0.0;
   config.wide_spread_m = 0.07;
   return config;
 }
