@@ -18,6 +18,7 @@ __all__ = ["plot_errors_over_time", "plot_evaluation"]
 
 Floats = NDArray[np.float64]
 
+_MOST_TESTS_OVER_TIME = 12
 _COLOURS = ("#1b6ca8", "#d1603d", "#3d8b5f", "#8a5a9e", "#7a7a7a", "#c2a02c", "#4f4f4f", "#b0b0b0")
 
 
@@ -26,6 +27,7 @@ def plot_evaluation(evaluation: Evaluation, folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     prefix = f"scenario{evaluation.scenario}"
     return [
+        *_angles_over_time(evaluation, folder),
         _histogram(evaluation, folder / f"{prefix}_histogram.png"),
         _bars(
             {method: evaluation.class_errors_cm(method) for method in evaluation.methods},
@@ -40,16 +42,34 @@ def plot_evaluation(evaluation: Evaluation, folder: Path) -> list[Path]:
     ]
 
 
+def _angles_over_time(evaluation: Evaluation, folder: Path) -> list[Path]:
+    """Writes a plot a test of the errors of its joint angles, frame by frame.
+
+    It is as figure 7 of Liu et al. 2011; for evaluations of few tests.
+    """
+    written = []
+    for test in evaluation.tests if len(evaluation.tests) <= _MOST_TESTS_OVER_TIME else []:
+        curves = {}
+        for method, result in test.results.items():
+            errors = result.euler_errors_deg
+            if errors is not None and len(errors) == test.num_frames:
+                curves[method] = (np.arange(len(errors)) / evaluation.settings["rate_hz"], errors)
+        if curves:
+            path = folder / f"scenario{evaluation.scenario}_{test.name}_angles.png"
+            written.append(plot_errors_over_time(curves, test.name, path, "degrees an angle"))
+    return written
+
+
 def plot_errors_over_time(
-    curves: Mapping[str, tuple[Floats, Floats]], title: str, path: Path
+    curves: Mapping[str, tuple[Floats, Floats]], title: str, path: Path, unit: str = "cm"
 ) -> Path:
-    """Writes a plot of errors (cm) over times (s), with each curve's mean."""
+    """Writes a plot of errors over times (s), with each curve's mean."""
     figure, axes = _figure(9.0, 4.0)
     for colour, (name, (times, errors)) in zip(_COLOURS, curves.items(), strict=False):
         mean = float(errors.mean())
-        axes.plot(times, errors, color=colour, linewidth=1.4, label=f"{name}, mean {mean:.1f} cm")
+        axes.plot(times, errors, color=colour, linewidth=1.4, label=f"{name}, mean {mean:.1f}")
         axes.axhline(mean, color=colour, linewidth=1.0, linestyle="--")
-    axes.set(xlabel="time (s)", ylabel="RMS error over the joints (cm)", title=title)
+    axes.set(xlabel="time (s)", ylabel=f"error ({unit})", title=title)
     axes.margins(x=0.01, y=0.2)
     axes.set_ylim(bottom=0)
     axes.legend(frameon=False, loc="upper left", ncols=len(curves))

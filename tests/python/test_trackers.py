@@ -17,6 +17,7 @@ from sparse_mocap import (
     reconstruct,
 )
 from sparse_mocap.evaluation import Performance, excluded_clips, performed
+from sparse_mocap.rotations import product, rotated
 
 SITES = ("left_hand", "right_hand", "left_ankle", "right_ankle", "head", "torso")
 BOTH = ("position", "orientation")
@@ -37,13 +38,16 @@ def solved(
     options: dict[str, object] | None = None,
     *,
     tracker_yaw_rad: float = 0.0,
+    best_quality: bool = False,
+    method: str = "liu2011",
 ) -> Reconstruction:
     """Returns the reconstruction without the clip itself, on the performer's body."""
     names = [clip.name for clip in database.clips]
     return reconstruct(
         take,
         database,
-        method="liu2011",
+        best_quality=best_quality,
+        method=method,
         options=options or {},
         body=performance.motion.skeleton,
         tracker_yaw_rad=tracker_yaw_rad,
@@ -128,3 +132,88 @@ def test_a_silent_tracker_is_bridged(database: MotionDatabase, ideal: Performanc
 def test_accelerations_alone_are_refused(database: MotionDatabase, ideal: Performance) -> None:
     with pytest.raises(ConfigError, match="needs orientation or position of every sensor"):
         solved(database, ideal, ideal.seen(all_give(("specific_force",))))
+
+
+def test_fewer_than_six_trackers_are_enough(database: MotionDatabase, ideal: Performance) -> None:
+    take = ideal.seen(dict.fromkeys(("left_hand", "right_ankle", "torso"), BOTH))
+    assert heading_errors_cm(solved(database, ideal, take), ideal).mean() < 4.0
+
+
+def test_best_quality_is_evener_and_no_farther(
+    database: MotionDatabase, library: Path, ideal: Performance
+) -> None:
+    noisy = performed(library / f"{CLIP}.bvh", sites=SITES, noise="ultrasonic", seed=1)
+    take = noisy.seen(all_give(BOTH))
+    live, best = (
+        solved(database, ideal, take, best_quality=best_quality) for best_quality in (False, True)
+    )
+    assert best.latency_s is None
+    assert heading_errors_cm(best, ideal).mean() < 1.1 * heading_errors_cm(live, ideal).mean()
+
+    def jerk(found: Reconstruction) -> float:
+        positions = np.asarray(found.motion.without_extremities().joint_positions("heading"))
+        return float(np.linalg.norm(np.diff(positions, 3, axis=0), axis=-1).mean())
+
+    assert jerk(best) < 0.6 * jerk(live)
+
+
+def test_lost_track_is_found_again(database: MotionDatabase, ideal: Performance) -> None:
+    """The trackers' world turns and moves while they are not looked at."""
+    here = ideal.seen(all_give(BOTH))
+    half_turn = np.array([np.cos(1.25), 0.0, np.sin(1.25), 0.0])
+    sensors = {}
+    for site, record in here.sensors.items():
+        is_late = record.times_s > 1.5
+        position, orientation = record.position, record.orientation
+        assert position is not None
+        assert orientation is not None
+        turned = rotated(np.repeat(half_turn[None], len(position), axis=0), position)
+        sensors[site] = SensorRecord(
+            record.times_s,
+            record.specific_force,
+            None,
+            np.where(is_late[:, None], product(half_turn, orientation), orientation),
+            np.where(is_late[:, None], turned + np.array([2.0, 0.0, 1.0]), position),
+        )
+    found = solved(database, ideal, Take(sensors))
+    lost = solved(database, ideal, Take(sensors), {"restart_after_s": 0})
+    late = slice(int(2.5 * found.rate_hz), None)
+    assert heading_errors_cm(found, ideal)[late].mean() < 2.0
+    assert heading_errors_cm(lost, ideal)[late].mean() > 4.0
+
+
+def test_drifting_headings_are_set_right(database: MotionDatabase, ideal: Performance) -> None:
+    """One forearm's heading drifts by 30 degrees while nothing says where the hands are."""
+    take = ideal.seen(all_give(("orientation",)))
+    record = take.sensors["left_hand"]
+    half = 0.5 * np.radians(12.0) * record.times_s
+    zero = np.zeros_like(half)
+    drift = np.stack([np.cos(half), zero, np.sin(half), zero], axis=1)
+    assert record.orientation is not None
+    off = SensorRecord(
+        record.times_s, record.specific_force, None, product(drift, record.orientation)
+    )
+    drifting = Take(take.sensors | {"left_hand": off})
+    trusted = heading_errors_cm(solved(database, ideal, drifting), ideal)
+    followed = heading_errors_cm(
+        solved(database, ideal, drifting, {"heading_drift_deg": 12}), ideal
+    )
+    assert followed[-30:].mean() < 0.8 * trusted[-30:].mean()
+
+
+@pytest.mark.parametrize("best_quality", [False, True])
+def test_the_default_method_places_limbs_as_orientations_say(
+    database: MotionDatabase, ideal: Performance, best_quality: bool
+) -> None:
+    def errors(channels: tuple[str, ...], yaw_rad: float = 0.0) -> float:
+        take = ideal.seen(all_give(channels))
+        found = solved(
+            database, ideal, take, method="path_regression",
+            best_quality=best_quality, tracker_yaw_rad=yaw_rad,
+        )  # fmt: skip
+        return float(heading_errors_cm(found, ideal).mean())
+
+    alone = errors(("specific_force",))
+    together = errors(("specific_force", "orientation"))
+    assert together < 0.8 * alone
+    assert errors(("specific_force", "orientation"), 2.5) == pytest.approx(together, abs=0.15)

@@ -54,6 +54,8 @@ class Estimate:
     """(T, J, 4), root without heading; None for baselines that only know positions."""
     world: World | None = None
     """None like rotations."""
+    angles_rad: Floats | None = None
+    """(T, A) instead of rotations, for baselines that show frames of the database."""
     match: str | None = None
     """How well the reconstruction says that it matches."""
 
@@ -107,7 +109,8 @@ class Truth:
         )
         jerk = mean_jerk(estimate.positions, self.rate_hz)
         if estimate.rotations is None or estimate.world is None:
-            return clip_result(errors, frame_errors(errors), jerk)
+            eulers = self._euler_errors_deg(is_known, estimate)
+            return clip_result(errors, frame_errors(errors), jerk, euler_errors_deg=eulers)
         rotations = nearest(times, estimate.rotations, wanted)
         angles = joint_angle_errors_deg(self.rotations[is_known], rotations)
         true_angles = self.skeleton.angles(self.rotations[is_known])
@@ -119,6 +122,12 @@ class Truth:
         )
         moved = self._movement(estimate.positions, estimate.rotations, world, is_known)
         return clip_result(errors, frame_errors(errors), jerk, angles, moved, label, eulers)
+
+    def _euler_errors_deg(self, is_known: NDArray[np.bool_], estimate: Estimate) -> Floats | None:
+        if estimate.angles_rad is None:
+            return None
+        found = nearest(estimate.times_s, estimate.angles_rad, self.times_s[is_known])
+        return euler_errors_deg(self.skeleton.angles(self.rotations[is_known], found), found)
 
     def _movement(
         self, positions: Floats, rotations: Floats, world: World, is_known: NDArray[np.bool_]

@@ -58,6 +58,8 @@ class Settings:
     """Empty: every method that needs a database alone, live."""
     tests: str | None = None
     """A pattern on file names; None is one clip for each actor and class."""
+    every: int = 1
+    """Of the clips that would be tested, only every so many-th is."""
     pairs: tuple[tuple[str, str], ...] = ()
     """Patterns on the names of training and test clips, in place of a scenario's split."""
     sites: tuple[str, ...] = PAPER_SITES
@@ -178,7 +180,7 @@ class _Run:
         if not settings.pairs:
             return [
                 (test, excluded_clips(self.clips, test, settings.scenario))
-                for test in choose_tests(self.clips, settings.tests)
+                for test in choose_tests(self.clips, settings.tests)[:: settings.every]
             ]
         found = []
         for training, pattern in settings.pairs:
@@ -249,7 +251,9 @@ class _Run:
             np.asarray(motion.joint_positions("heading")),
             heading_rotations(motion),
             world_of(motion),
-            match(solved, self.database) if "sensor_misfit_mps2" in solved.diagnostics else None,
+            match=match(solved, self.database)
+            if "sensor_misfit_mps2" in solved.diagnostics
+            else None,
         )
 
     def _solved(
@@ -283,8 +287,14 @@ class _Run:
             (readings.times_s, playback_best_path(database, readings, excluded)),
             (readings.times_s, nearest_windows(database, readings, WINDOW, excluded)),
         )
+        angles = database.array("angles")
         found = [
-            Estimate(name, times, np.asarray(self.truths[rows], float))
+            Estimate(
+                name,
+                times,
+                np.asarray(self.truths[rows], float),
+                angles_rad=np.asarray(angles[rows], float),
+            )
             for name, (times, rows) in zip(BASELINES, frames, strict=False)
         ]
         mean_pose = np.broadcast_to(truth.mean(axis=0), truth.shape)

@@ -50,6 +50,10 @@ BodyPose HeadingFrame::from_parent(BodyPose pose) const {
   return pose;
 }
 
+HeadingFrame HeadingFrame::inverse() const {
+  return {-yaw_rad, -(yaw_rotation(-yaw_rad) * origin)};
+}
+
 HeadingFrame heading_frame_of(const Skeleton& skeleton, const BodyPose& pose, double last_rad) {
   JointTransforms transforms;
   forward_kinematics(skeleton, pose, transforms);

@@ -21,6 +21,7 @@ struct HeadingFrame {
 
   BodyPose to_parent(BodyPose pose) const;
   BodyPose from_parent(BodyPose pose) const;
+  HeadingFrame inverse() const;  // of the parent in it
 };
 
 // The heading frame under a pose; where the pose has no heading, last_rad is kept.

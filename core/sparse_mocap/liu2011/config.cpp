@@ -18,7 +18,7 @@ ControlWeights Config::control() const {
 
 const std::vector<PresetInfo>& presets() {
   static const std::vector<PresetInfo> list{
-      {"default", "The paper's method, with the sensors in the search."},
+      {"default", "The paper's method, with the sensors in the search and joint residuals."},
       {"paper", "The paper alone: histories are searched without the sensors."}};
   return list;
 }
@@ -49,6 +49,19 @@ const OptionTable<Config>& options() {
                   "deviations beyond which errors of sensors count ever less")
           .integer("max_iterations", &Config::max_iterations, 1, 10'000,
                    "steps of the optimisation, at most")
+          .flag("joint_residuals", &Config::joint_residuals,
+                "whether errors of a prediction go together, or each angle's is on its own")
+          .number("motion_deviation_m", &Config::motion_deviation_m, 0.0, 10.0,
+                  "deviation of sensors without a position from how their accelerations move them, "
+                  "m a frame; 0: accelerations are not used")
+          .number("heading_drift_deg", &Config::heading_drift_deg, 0.0, 90.0,
+                  "how far a sensor's heading drifts in a second; 0: headings are trusted")
+          .number("restart_after_s", &Config::restart_after_s, 0.0, 60.0,
+                  "how long sensors may be off before the search begins anew; 0: never")
+          .number("evenness_deg", &Config::evenness_deg, 0.01, 1e3,
+                  "best quality: deviation from even movement, of each angle")
+          .number("agreement_deg", &Config::agreement_deg, 0.01, 1e3,
+                  "best quality: deviation from the mean of both ways through the take")
           .number("local_pca_variance", &Config::local_pca_variance, 0.01, 1.0,
                   "local_pca: share of the variance that poses may vary in")
           .number("smoothness_deg", &Config::smoothness_deg, 0.01, 1e3,
@@ -63,6 +76,7 @@ Config config_of(const MethodSettings& settings) {
   if (settings.preset == "paper") {
     config.search_position_per_m = 0.0;
     config.search_orientation = 0.0;
+    config.joint_residuals = false;
   } else if (!settings.preset.empty() && settings.preset != "default") {
     throw ConfigError("unknown preset '" + settings.preset + "'; liu2011 has default and paper");
   }

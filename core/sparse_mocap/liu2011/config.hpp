@@ -37,6 +37,14 @@ struct Config {
   double robustness = 3.0;
   int max_iterations = 20;
 
+  // Beyond the paper.
+  bool joint_residuals = true;      // residuals of degrees of freedom go together
+  double motion_deviation_m = 0.0;  // of sensors from how their accelerations move them; 0: unused
+  double heading_drift_deg = 0.0;   // of each sensor's heading, in a second; 0: it does not drift
+  double restart_after_s = 0.4;     // without track of the sensors; 0: never
+  double evenness_deg = 1.0;        // best quality: of angles from even movement, frame by frame
+  double agreement_deg = 3.0;       // and from the mean of both ways through the take
+
   // The baselines.
   double local_pca_variance = 0.99;
   double smoothness_deg = 10.0;  // how far a pose is from moving on evenly

@@ -94,8 +94,8 @@ LocalDynamicModel local_dynamic_model(const Eigen::MatrixXd& x, const Eigen::Mat
   // Equation (7): gamma = Lambda_w^-1 U_w^T X^T W y.
   const Eigen::MatrixXd scores = model.axes.transpose() * rooted_x;
   model.gamma = inverse.asDiagonal() * (scores * rooted_y.transpose());
-  const Eigen::MatrixXd residuals = rooted_y - model.gamma.transpose() * scores;
-  model.deviations = residuals.rowwise().norm();
+  model.residuals = rooted_y - model.gamma.transpose() * scores;
+  model.deviations = model.residuals.rowwise().norm();
   return model;
 }
 

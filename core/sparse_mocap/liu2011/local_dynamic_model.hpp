@@ -12,6 +12,7 @@ struct LocalDynamicModel {
   Eigen::MatrixXd axes;            // U_w: orthonormal columns
   Eigen::MatrixXd gamma;           // reduced coefficients, one column a degree of freedom
   Eigen::VectorXd deviations;      // sigma_d, of the residuals
+  Eigen::MatrixXd residuals;       // times the roots of the examples' shares, one column each
 
   // Equation (8) without its noise: mean_y + beta_w^T (x - mean_x), where beta_w = U_w gamma.
   Eigen::VectorXd predicted(const Eigen::VectorXd& x) const {

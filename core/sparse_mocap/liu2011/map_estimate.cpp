@@ -51,8 +51,9 @@ double PosteriorEnergy::control(const BodyPose& pose) const {
   for (const Observation& observed : observed_) {
     const SensorPose predicted = sensor_pose(observed.worn, transforms);
     if (observed.has_position)
-      sum += robust_cost(position_residual(observed, predicted).squaredNorm(),
-                         weights_.sigma_position_m, weights_.robustness);
+      sum +=
+          robust_cost(position_residual(observed, predicted).squaredNorm(),
+                      observed.position_looseness * weights_.sigma_position_m, weights_.robustness);
     if (observed.has_orientation)
       sum += robust_cost(orientation_residual(observed, predicted).squaredNorm(),
                          weights_.sigma_orientation_rad, weights_.robustness);
@@ -91,7 +92,8 @@ void PosteriorEnergy::add_control(const BodyPose& pose, Equations& out) const {
       term.jacobian.rightCols(angles) = steps.ends.middleRows<3>(row);
       for (Eigen::Index a = 0; a < angles; ++a)
         term.jacobian.col(3 + a) += Vec3(steps.turns.block<3, 1>(row, a)).cross(arm);
-      add_term(term, weights_.sigma_position_m, weights_.robustness, out);
+      add_term(term, observed.position_looseness * weights_.sigma_position_m, weights_.robustness,
+               out);
     }
     if (observed.has_orientation) {
       term.residual = orientation_residual(observed, predicted);
@@ -140,16 +142,21 @@ Estimate nearest_minimum(const Skeleton& body, const PosteriorEnergy& energy, Bo
   return best;
 }
 
+bool is_off_track(std::span<const Observation> observed, const ControlWeights& weights,
+                  double control) {
+  double usual = 0.0;
+  for (const Observation& one : observed)
+    usual += ((one.has_position ? 1.0 : 0.0) + (one.has_orientation ? 1.0 : 0.0)) *
+             robust_cost(weights.robustness * weights.robustness, 1.0, weights.robustness);
+  return control > usual;
+}
+
 Estimate map_estimate(const Skeleton& body, std::span<const Observation> observed,
                       const ControlWeights& weights, const PosePrior& prior, const BodyPose& start,
                       int max_iterations) {
   const PosteriorEnergy energy(body, observed, weights, prior);
   Estimate near = nearest_minimum(body, energy, start, max_iterations);
-  double usual = 0.0;  // control term of sensors that are off by c sigma_data
-  for (const Observation& one : observed)
-    usual += ((one.has_position ? 1.0 : 0.0) + (one.has_orientation ? 1.0 : 0.0)) *
-             robust_cost(weights.robustness * weights.robustness, 1.0, weights.robustness);
-  if (energy.control(near.pose) <= usual) return near;
+  if (!is_off_track(observed, weights, energy.control(near.pose))) return near;
   ControlWeights wide = weights;
   wide.robustness *= kWider;
   const PosteriorEnergy wide_energy(body, observed, wide, prior);

@@ -70,6 +70,10 @@ struct Estimate {
 Estimate nearest_minimum(const Skeleton& body, const PosteriorEnergy& energy, BodyPose start,
                          int max_iterations);
 
+// Whether a control term is more than that of sensors that are all off by c sigma_data.
+bool is_off_track(std::span<const Observation> observed, const ControlWeights& weights,
+                  double control);
+
 // The pose of section 6.3. The Lorentzian hardly pulls where sensors are far off, so if they still
 // are at the minimum near the start, a wider one leads there as well; the lower minimum wins.
 Estimate map_estimate(const Skeleton& body, std::span<const Observation> observed,

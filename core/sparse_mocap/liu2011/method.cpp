@@ -7,6 +7,7 @@
 #include "sparse_mocap/liu2011/bone_lengths.hpp"
 #include "sparse_mocap/liu2011/config.hpp"
 #include "sparse_mocap/liu2011/reconstructor.hpp"
+#include "sparse_mocap/liu2011/whole_take.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 
 namespace sparse_mocap::liu2011 {
@@ -95,6 +96,10 @@ MethodEntry method() {
   entry.make_live = [](const MethodSettings& settings,
                        const MethodContext& context) -> std::unique_ptr<LiveMethod> {
     return std::make_unique<Reconstructor>(config_of(settings), context);
+  };
+  entry.make_whole_take = [](const MethodSettings& settings,
+                             const MethodContext& context) -> std::unique_ptr<WholeTakeMethod> {
+    return std::make_unique<WholeTakeReconstructor>(config_of(settings), context);
   };
   entry.train = &trained;
   return entry;

@@ -26,9 +26,11 @@ Vec3 rotation_vector(const Quat& rotation) {
 
 }  // namespace
 
-MotionExamples::MotionExamples(std::shared_ptr<const MotionDatabase> database, Skeleton body)
+MotionExamples::MotionExamples(std::shared_ptr<const MotionDatabase> database, Skeleton body,
+                               Direction direction)
     : database_(std::move(database)),
       body_(std::move(body)),
+      direction_(direction),
       scale_(leg_length_m(bones_of(body_)) / leg_length_m(bones_of(database_->skeleton()))) {
   lay_out();
   numbers_.resize(num_frames(), num_numbers_);
@@ -53,8 +55,14 @@ BodyPose MotionExamples::pose(int frame) const {
 }
 
 HeadingFrame MotionExamples::step(int frame) const {
-  using namespace root_motion_column;
   if (is_first(frame)) return {};
+  return direction_ == Direction::forward ? recorded_step(frame)
+                                          : recorded_step(frame + 1).inverse();
+}
+
+// The heading frame of a frame in that of the frame before it in the recording.
+HeadingFrame MotionExamples::recorded_step(int frame) const {
+  using namespace root_motion_column;
   const auto motion = database_->root_motion().row(frame);
   const double dt_s = database_->frame_time_s();
   return {motion[yaw_rate] * dt_s,
@@ -62,7 +70,6 @@ HeadingFrame MotionExamples::step(int frame) const {
 }
 
 std::vector<MotionExamples::Place> MotionExamples::history(int frame, int count) const {
-  const auto before = [&](int at) { return is_first(at) ? at : at - 1; };
   std::vector<Place> places;
   Place place{before(frame), {}};
   for (int i = 0; i < count; ++i) {
@@ -142,7 +149,13 @@ void MotionExamples::put_numbers(int joint, const Mat3& R_joint, double* out) co
 }
 
 bool MotionExamples::is_first(int frame) const {
-  return frame == retrieval::clip_at(*database_, frame).begin;
+  const Clip& clip = retrieval::clip_at(*database_, frame);
+  return frame == (direction_ == Direction::forward ? clip.begin : clip.end - 1);
+}
+
+int MotionExamples::before(int frame) const {
+  if (is_first(frame)) return frame;
+  return direction_ == Direction::forward ? frame - 1 : frame + 1;
 }
 
 // Of each ball joint the rotation nearest to all, by their quaternions; of others the angles' mean.

@@ -11,14 +11,18 @@
 
 namespace sparse_mocap::liu2011 {
 
+// Which way clips are played.
+enum class Direction { forward, backward };
+
 // The database's frames as a performer with a given body would have moved, quickly looked up.
 //
-// The frame before one is the one before it in its clip; the first frame of a clip stands in for
-// those before it.
+// The frame before one is the one before it in its clip as it is played; the first frame of a clip
+// stands in for those before it.
 class MotionExamples {
  public:
   // The body is a standard skeleton; root motion is scaled by the length of its legs.
-  MotionExamples(std::shared_ptr<const MotionDatabase> database, Skeleton body);
+  MotionExamples(std::shared_ptr<const MotionDatabase> database, Skeleton body,
+                 Direction direction = Direction::forward);
 
   const MotionDatabase& database() const { return *database_; }
   const Skeleton& body() const { return body_; }
@@ -69,10 +73,13 @@ class MotionExamples {
   void lay_out();
   void put_numbers(int joint, const Mat3& R_joint, double* out) const;
   bool is_first(int frame) const;
+  int before(int frame) const;
+  HeadingFrame recorded_step(int frame) const;
   BodyPose mean_of(std::span<const Place> places, const Eigen::VectorXd& weights) const;
 
   std::shared_ptr<const MotionDatabase> database_;
   Skeleton body_;
+  Direction direction_;
   double scale_ = 1.0;  // of root motion
   std::vector<Layout> layout_;
   Eigen::Index num_numbers_ = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/liu2011/pose_priors.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,18 @@ Eigen::VectorXd floors(Eigen::Index freedoms, double root_m, double angle_deg) {
   Eigen::VectorXd out = Eigen::VectorXd::Constant(freedoms, angle_deg * kRadiansPerDegree);
   out.head<3>().setConstant(root_m);
   return out;
+}
+
+// Equation (14): one row a degree of freedom.
+Eigen::MatrixXd own_whitening(const Eigen::VectorXd& deviations, const Eigen::VectorXd& least) {
+  return Eigen::MatrixXd(deviations.cwiseMax(least).cwiseInverse().asDiagonal());
+}
+
+// The same with the covariance of all residuals, to which the floors are added.
+Eigen::MatrixXd joint_whitening(const Eigen::MatrixXd& residuals, const Eigen::VectorXd& least) {
+  Eigen::MatrixXd covariance = residuals * residuals.transpose();
+  covariance.diagonal() += least.cwiseAbs2();
+  return covariance.llt().matrixL().solve(Eigen::MatrixXd::Identity(least.size(), least.size()));
 }
 
 }  // namespace
@@ -52,9 +65,10 @@ PosePrior dynamic_prior(const Skeleton& body, const LocalExamples& examples,
       local_dynamic_model(examples.x, examples.y, examples.weights, config.pca_variance);
   const Eigen::VectorXd least =
       floors(examples.y.rows(), config.root_deviation_floor_m, config.deviation_floor_deg);
-  const Eigen::VectorXd whitening = model.deviations.cwiseMax(least).cwiseInverse();
   const Eigen::VectorXd predicted = model.predicted(pose_vectors(body, examples.reference, recent));
-  return {examples.reference, whitening.asDiagonal(), whitening.cwiseProduct(predicted)};
+  const Eigen::MatrixXd whitening = config.joint_residuals ? joint_whitening(model.residuals, least)
+                                                           : own_whitening(model.deviations, least);
+  return {examples.reference, whitening, whitening * predicted};
 }
 
 PosePrior local_pca_prior(const Skeleton& body, const LocalExamples& examples,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sparse_mocap/liu2011/config.hpp"
+#include "sparse_mocap/liu2011/heading_drift.hpp"
 #include "sparse_mocap/liu2011/history_search.hpp"
 #include "sparse_mocap/liu2011/motion_examples.hpp"
 #include "sparse_mocap/liu2011/start.hpp"
@@ -19,8 +20,9 @@ namespace sparse_mocap::liu2011 {
 // I3D 2011.
 class Reconstructor : public LiveMethod {
  public:
-  // Throws ConfigError.
-  Reconstructor(const Config& config, const MethodContext& context);
+  // Throws ConfigError. Backward: readings come from the end of the performance.
+  Reconstructor(const Config& config, const MethodContext& context,
+                Direction direction = Direction::forward);
 
   const Skeleton& skeleton() const override { return examples_.body(); }
   double rate_hz() const override { return examples_.database().rate_hz(); }
@@ -33,6 +35,10 @@ class Reconstructor : public LiveMethod {
   void reset() override;
 
  private:
+  std::vector<Observation> observed_in(const HeadingFrame& frame, std::span<const BodyPose> recent,
+                                       const Reading& reading) const;
+  Estimate estimated(const HeadingFrame& frame, const Reading& reading);
+  void restart_if_lost(const Reading& reading, HeadingFrame& frame, Estimate& estimate);
   void remember(BodyPose pose);
   PoseEstimate told(const Reading& reading, const Eigen::VectorXd& weights) const;
 
@@ -49,6 +55,11 @@ class Reconstructor : public LiveMethod {
   std::vector<BodyPose> recent_;        // the last m poses, the newest first, in the world
   double yaw_rad_ = 0.0;                // of the newest
   std::vector<retrieval::Neighbour> nearest_;
+  Eigen::VectorXd nearest_weights_;
+  HeadingDrift drift_;
+  Eigen::Matrix3Xd accelerations_;  // of the newest, in the world; empty before there is one
+  bool is_off_track_ = false;
+  int num_off_track_ = 0;  // frames
 };
 
 }  // namespace sparse_mocap::liu2011

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/liu2011/start.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -70,22 +69,20 @@ Placement placed(std::span<const Observation> observed, std::span<const SensorPo
 
 Start::Start(const MotionExamples& examples, const std::vector<bool>& is_searched)
     : examples_(examples) {
-  const auto count = std::count(is_searched.begin(), is_searched.end(), true);
-  const auto stride = count / kMostFrames + 1;
-  std::ptrdiff_t seen = 0;
   for (int frame = 0; frame < examples.num_frames(); ++frame)
-    if (is_searched[static_cast<std::size_t>(frame)] && seen++ % stride == 0)
-      frames_.push_back(frame);
+    if (is_searched[static_cast<std::size_t>(frame)]) frames_.push_back(frame);
 }
 
 std::vector<BodyPose> Start::history(std::span<const Observation> observed,
-                                     const ControlWeights& weights, int num_poses) const {
+                                     const ControlWeights& weights, int num_poses,
+                                     std::size_t most_frames) const {
   int nearest = frames_.front();
   Placement best{{}, std::numeric_limits<double>::infinity()};
   JointTransforms transforms;
   std::vector<SensorPose> modelled(observed.size());
-  for (const int frame : frames_) {
-    if (observed.empty()) break;
+  const std::size_t stride = frames_.size() / most_frames + 1;
+  for (std::size_t i = 0; i < frames_.size() && !observed.empty(); i += stride) {
+    const int frame = frames_[i];
     forward_kinematics(examples_.body(), examples_.pose(frame), transforms);
     for (std::size_t s = 0; s < observed.size(); ++s)
       modelled[s] = sensor_pose(observed[s].worn, transforms);

@@ -33,11 +33,12 @@ class Start {
   Start(const MotionExamples& examples, const std::vector<bool>& is_searched);
 
   std::vector<BodyPose> history(std::span<const Observation> observed,
-                                const ControlWeights& weights, int num_poses) const;
+                                const ControlWeights& weights, int num_poses,
+                                std::size_t most_frames = kMostFrames) const;
+
+  static constexpr std::size_t kMostFrames = 100'000;  // of larger databases every n-th is tried
 
  private:
-  static constexpr int kMostFrames = 100'000;  // of larger databases every n-th is tried
-
   const MotionExamples& examples_;
   std::vector<int> frames_;
 };

@@ -33,6 +33,7 @@ struct Observation {
   WornSensor worn;
   bool has_position = false, has_orientation = false;
   SensorPose measured;
+  double position_looseness = 1.0;  // deviations of its position, in sigma_data
 };
 
 // What sensors would say of where they are on a body in a pose.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "sparse_mocap/path_regression/oriented_limbs.hpp"
 #include "sparse_mocap/path_regression/regression.hpp"
 #include "sparse_mocap/retrieval/diagnostics.hpp"
 #include "sparse_mocap/retrieval/extremity_vote.hpp"
@@ -20,8 +21,9 @@ namespace {
 std::vector<float> column_weights(const std::vector<Signal>& signals, const Config& config) {
   std::vector<float> weights;
   for (const auto& signal : signals) {
-    const double unit =
-        signal.channel == Channel::gravity_direction ? config.gravity_weight_mps2 : 1.0;
+    const double unit = signal.channel == Channel::gravity_direction ? config.gravity_weight_mps2
+                        : signal.channel == Channel::orientation ? config.orientation_weight_mps2
+                                                                 : 1.0;
     const double leg = is_on_leg(signal) ? config.leg_weight : 1.0;
     weights.insert(weights.end(), 3, static_cast<float>(unit * leg));
   }
@@ -38,7 +40,7 @@ double agreement(const Eigen::VectorXd& spread_m, double wide_spread_m) {
 
 FrameSolver::FrameSolver(const Config& config, const MethodContext& context)
     : database_(context.database),
-      signals_(compared_signals(context.sensors, true)),
+      signals_(all_signals(with_turning(context.sensors))),
       num_sensors_(static_cast<Eigen::Index>(context.sensors.size())),
       column_weights_(column_weights(signals_, config)),
       features_(config.features, database_->rate_hz()),
@@ -80,7 +82,14 @@ RetrievedFrame FrameSolver::retrieve(const std::vector<Path>& paths, const Signa
   const Eigen::VectorXd weights =
       config_.regression_ridge > 0.0 ? regressed(weighted, window) : weighted.weights;
   MeanPoints mean = mean_points(weighted.paths, weights);
-  if (mean.before.size() > 0) frame.target.step = mean.now - mean.before;
+  place_oriented_limbs(database_->skeleton(), signals_, window.rows.row(window.at),
+                       config_.fit.lever_m, mean.now);
+  if (mean.before.size() > 0) {
+    const Eigen::Index before = std::max(window.at - 1, window.begin);
+    place_oriented_limbs(database_->skeleton(), signals_, window.rows.row(before),
+                         config_.fit.lever_m, mean.before);
+    frame.target.step = mean.now - mean.before;
+  }
   frame.target.points = std::move(mean.now);
   frame.target.inclination = inclination_target(database_->skeleton(), reading, signals_);
   frame.target.turning = turning_targets(reading, signals_);

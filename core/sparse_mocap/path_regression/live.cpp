@@ -7,14 +7,16 @@ namespace sparse_mocap::path_regression {
 
 LiveReconstructor::LiveReconstructor(const Config& config, const MethodContext& context)
     : solver_(config, context),
+      turning_(context.sensors),
       fit_(solver_.database().skeleton(), solver_.database().frame_time_s(), config.fit),
       graph_(retrieval::clips_of_frames(solver_.database()),
              {solver_.config().penalty, solver_.config().forgetting}),
       recent_(solver_.reach_back() + solver_.look_ahead() + 2,
               static_cast<Eigen::Index>(3 * solver_.signals().size())) {}
 
-std::optional<PoseEstimate> LiveReconstructor::step(const Reading& reading) {
-  require_sensors(reading, solver_.num_sensors());
+std::optional<PoseEstimate> LiveReconstructor::step(const Reading& measured) {
+  require_sensors(measured, solver_.num_sensors());
+  const Reading reading = turning_(measured);
   if (num_recent_ == recent_.rows()) {
     recent_.topRows(num_recent_ - 1) = recent_.bottomRows(num_recent_ - 1).eval();
     --num_recent_;
@@ -36,6 +38,7 @@ void LiveReconstructor::reset() {
   frames_.clear();
   targets_.clear();
   graph_.reset();
+  turning_.reset();
   waiting_.clear();
   num_recent_ = 0;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sparse_mocap/path_regression/frame_solver.hpp"
+#include "sparse_mocap/path_regression/oriented_limbs.hpp"
 #include "sparse_mocap/path_regression/take_fit.hpp"
 #include "sparse_mocap/retrieval/olng.hpp"
 
@@ -30,6 +31,7 @@ class LiveReconstructor : public LiveMethod {
   PoseEstimate solve_next();
 
   FrameSolver solver_;
+  TurningOf turning_;
   TakeFit fit_;
   // The last frames, as many as a fit looks back, and the targets they had.
   std::vector<FittedFrame> frames_;

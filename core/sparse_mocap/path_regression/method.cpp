@@ -18,7 +18,8 @@ MethodEntry method() {
   entry.info.presets = presets();
   entry.info.options = options().described(live_config());
   entry.info.required_channels = Channel::specific_force;
-  entry.info.optional_channels = Channel::gravity_direction | Channel::angular_velocity;
+  entry.info.optional_channels =
+      Channel::gravity_direction | Channel::angular_velocity | Channel::orientation;
   entry.info.most_sensors = static_cast<int>(all_sites().size());
   entry.info.needs_database = true;
   entry.make_live = [](const MethodSettings& settings,

@@ -63,9 +63,12 @@ std::vector<PoseEstimate> WholeTakeReconstructor::fitted(
   return estimates;
 }
 
-std::vector<PoseEstimate> WholeTakeReconstructor::solve(const std::vector<Reading>& take,
+std::vector<PoseEstimate> WholeTakeReconstructor::solve(const std::vector<Reading>& measured,
                                                         const Progress& progress) {
-  for (const auto& reading : take) require_sensors(reading, solver_.num_sensors());
+  for (const auto& reading : measured) require_sensors(reading, solver_.num_sensors());
+  turning_.reset();
+  std::vector<Reading> take;
+  for (const auto& reading : measured) take.push_back(turning_(reading));
   const retrieval::FeatureRows signals = signal_rows(take, solver_.signals());
   const auto window = [&](std::size_t t) {
     return retrieval::SignalWindow{signals, 0, signals.rows(), static_cast<Eigen::Index>(t)};

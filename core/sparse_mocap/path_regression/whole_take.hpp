@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sparse_mocap/path_regression/frame_solver.hpp"
+#include "sparse_mocap/path_regression/oriented_limbs.hpp"
 
 namespace sparse_mocap::path_regression {
 
@@ -14,7 +15,7 @@ class WholeTakeReconstructor : public WholeTakeMethod {
  public:
   // Throws ConfigError.
   WholeTakeReconstructor(const Config& config, const MethodContext& context)
-      : solver_(config, context), num_threads_(context.num_threads) {}
+      : solver_(config, context), turning_(context.sensors), num_threads_(context.num_threads) {}
 
   const Skeleton& skeleton() const override { return solver_.database().skeleton(); }
   double rate_hz() const override { return solver_.database().rate_hz(); }
@@ -30,6 +31,7 @@ class WholeTakeReconstructor : public WholeTakeMethod {
   std::vector<Result> in_parallel(std::size_t count, const Reached& reached, const Of& of) const;
 
   FrameSolver solver_;
+  TurningOf turning_;
   int num_threads_;
 };
 

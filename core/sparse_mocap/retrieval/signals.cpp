@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sparse_mocap/base/errors.hpp"
+#include "sparse_mocap/retrieval/shared_heading.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 
 namespace sparse_mocap::retrieval {
@@ -29,6 +30,24 @@ const SiteRows& site_rows(const MotionDatabase& database, int site) {
   return database.site(static_cast<std::size_t>(at - names.begin()));
 }
 
+// The sensors whose axes are compared; their columns follow all others.
+struct Turned {
+  std::vector<Eigen::Index> sensors;
+  std::vector<int> sites;
+
+  explicit Turned(std::span<const Signal> signals) {
+    for (const Signal& signal : signals)
+      if (signal.channel == Channel::orientation &&
+          (sensors.empty() || sensors.back() != signal.sensor)) {
+        sensors.push_back(signal.sensor);
+        sites.push_back(signal.site);
+      }
+  }
+  Eigen::Index num_columns() const {
+    return kAxesColumns * static_cast<Eigen::Index>(sites.size());
+  }
+};
+
 }  // namespace
 
 std::vector<Signal> compared_signals(const std::vector<Sensor>& sensors, bool with_gravity) {
@@ -44,6 +63,16 @@ std::vector<Signal> compared_signals(const std::vector<Sensor>& sensors, bool wi
   return signals;
 }
 
+std::vector<Signal> all_signals(const std::vector<Sensor>& sensors) {
+  std::vector<Signal> signals = compared_signals(sensors, true);
+  for (std::size_t s = 0; s < sensors.size(); ++s)
+    if (sensors[s].channels.has(Channel::orientation))
+      signals.insert(signals.end(), 2,
+                     {static_cast<Eigen::Index>(s), sensors[s].site, sensors[s].position_along_bone,
+                      Channel::orientation});
+  return signals;
+}
+
 bool is_on_leg(const Signal& signal) {
   using namespace standard_joint;
   const int carrier = site_of(signal.site).carrier;
@@ -52,7 +81,11 @@ bool is_on_leg(const Signal& signal) {
 
 FeatureRows database_signals(const MotionDatabase& database, std::span<const Signal> signals) {
   FeatureRows rows(database.num_frames(), static_cast<Eigen::Index>(3 * signals.size()));
+  const Turned turned(signals);
+  if (!turned.sites.empty())
+    rows.rightCols(turned.num_columns()) = database_axes(database, turned.sites);
   for (std::size_t s = 0; s < signals.size(); ++s) {
+    if (signals[s].channel == Channel::orientation) continue;
     const SiteRows& site = site_rows(database, signals[s].site);
     const auto along = static_cast<float>(signals[s].position_along_bone);
     auto signal = rows.middleCols(static_cast<Eigen::Index>(3 * s), 3);
@@ -73,7 +106,11 @@ FeatureRows database_signals(const MotionDatabase& database, std::span<const Sig
 
 Eigen::RowVectorXf signal_row(const Reading& reading, std::span<const Signal> signals) {
   Eigen::RowVectorXf row(static_cast<Eigen::Index>(3 * signals.size()));
+  const Turned turned(signals);
+  if (!turned.sites.empty())
+    row.tail(turned.num_columns()) = axes_row(reading, turned.sensors, turned.sites);
   for (std::size_t s = 0; s < signals.size(); ++s) {
+    if (signals[s].channel == Channel::orientation) continue;
     const auto& channel = signals[s].channel == Channel::gravity_direction
                               ? reading.gravity_direction
                               : reading.specific_force;

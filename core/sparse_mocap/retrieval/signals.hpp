@@ -15,12 +15,16 @@ struct Signal {
   Eigen::Index sensor = 0;  // column of the reading
   int site = 0;             // index in all_sites()
   double position_along_bone = 1.0;
-  Channel channel = Channel::specific_force;  // or gravity_direction
+  // Or gravity_direction; or orientation, of which a sensor has two signals, one after the other:
+  // its x and its z axis as shared_heading.hpp has them.
+  Channel channel = Channel::specific_force;
 };
 
 // The specific force of every sensor and then, if wanted, the gravity direction of those that give
 // it. Throws ConfigError when there is no sensor, or two at one site.
 std::vector<Signal> compared_signals(const std::vector<Sensor>& sensors, bool with_gravity);
+// The same with gravity, and then the axes of those that have an orientation.
+std::vector<Signal> all_signals(const std::vector<Sensor>& sensors);
 
 // Whether the sensor's site is on a thigh or a shank.
 bool is_on_leg(const Signal& signal);

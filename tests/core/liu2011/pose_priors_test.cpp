@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 #include "liu2011/bodies.hpp"
+#include "sparse_mocap/liu2011/local_dynamic_model.hpp"
 
 namespace sparse_mocap::liu2011 {
 namespace {
@@ -58,6 +61,7 @@ TEST_F(Priors, LearnFromTheExamplesAboutTheirMean) {
 
 TEST_F(Priors, DynamicOnePredictsWhereTheMovementGoes) {
   Config config;
+  config.joint_residuals = false;
   config.pca_variance = 0.99;
   const PosePrior prior = dynamic_prior(examples_.body(), local_, recent(150), config);
   EXPECT_LT(distance_m(examples_.body(), mean_of(prior), examples_.next(150)), 0.04);
@@ -65,6 +69,26 @@ TEST_F(Priors, DynamicOnePredictsWhereTheMovementGoes) {
   const Eigen::VectorXd deviations = prior.whitening.diagonal().cwiseInverse();
   EXPECT_GE(deviations.tail(43).minCoeff(), 3.0 * kRadiansPerDegree - 1e-12);
   EXPECT_GE(deviations.head(3).minCoeff(), 0.01 - 1e-12);
+}
+
+TEST_F(Priors, DynamicOneKnowsHowErrorsOfAPredictionGoTogether) {
+  const Config config;
+  const PosePrior prior = dynamic_prior(examples_.body(), local_, recent(150), config);
+  const auto model = local_dynamic_model(local_.x, local_.y, local_.weights, config.pca_variance);
+  // The weighted covariance of what the model leaves, example by example, and the floors.
+  Eigen::MatrixXd wanted = Eigen::MatrixXd::Zero(46, 46);
+  for (Eigen::Index k = 0; k < local_.y.cols(); ++k) {
+    const Eigen::VectorXd left = local_.y.col(k) - model.predicted(local_.x.col(k));
+    wanted += local_.weights[k] / local_.weights.sum() * left * left.transpose();
+  }
+  wanted.diagonal().head(3).array() += 0.01 * 0.01;
+  wanted.diagonal().tail(43).array() += std::pow(3.0 * kRadiansPerDegree, 2);
+  const Eigen::MatrixXd found = (prior.whitening.transpose() * prior.whitening).inverse();
+  EXPECT_LT((found - wanted).norm(), 1e-6 * wanted.norm());
+  const Eigen::VectorXd mean = prior.whitening.partialPivLu().solve(prior.target);
+  EXPECT_LT((mean - model.predicted(pose_vectors(examples_.body(), local_.reference, recent(150))))
+                .norm(),
+            1e-9);
 }
 
 TEST_F(Priors, LocalPcaKeepsToTheExamplesSubspace) {

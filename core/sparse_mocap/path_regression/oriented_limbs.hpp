@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "sparse_mocap/motion/skeleton.hpp"
+#include "sparse_mocap/readings/reading.hpp"
+#include "sparse_mocap/retrieval/signals.hpp"
+
+namespace sparse_mocap::path_regression {
+
+// Orientations tell what gyroscopes do. What sensors with an orientation give, together with what
+// follows from it: gravity direction and angular velocity where they have none of their own.
+std::vector<Sensor> with_turning(std::vector<Sensor> sensors);
+
+// Fills that in, reading by reading.
+class TurningOf {
+ public:
+  // sensors: as they were before with_turning().
+  explicit TurningOf(std::vector<Sensor> sensors) : sensors_(std::move(sensors)) {}
+
+  Reading operator()(Reading reading);
+  void reset() { before_ = {}; }
+
+ private:
+  std::vector<Sensor> sensors_;
+  Reading before_;  // as it was measured
+};
+
+// Turns the limbs with sensors as these measure it, from where retrieved poses have elbows, knees,
+// neck and pelvis; one turn about the vertical, common to all sensors, is fitted to the points.
+// points: as pose_points, with the same lever; row: a row of the signals.
+void place_oriented_limbs(const Skeleton& skeleton, std::span<const retrieval::Signal> signals,
+                          const Eigen::Ref<const Eigen::RowVectorXf>& row, double lever_m,
+                          Eigen::VectorXd& points);
+
+}  // namespace sparse_mocap::path_regression
