@@ -72,7 +72,9 @@ def plot_errors_over_time(
     axes.set(xlabel="time (s)", ylabel=f"error ({unit})", title=title)
     axes.margins(x=0.01, y=0.2)
     axes.set_ylim(bottom=0)
-    axes.legend(frameon=False, loc="upper left", ncols=len(curves))
+    columns = min(len(curves), 3)
+    size = "medium" if len(curves) <= columns else "small"
+    axes.legend(frameon=False, loc="upper left", ncols=columns, fontsize=size)
     return _saved(figure, axes, path)
 
 

@@ -92,14 +92,35 @@ void place(const Skeleton& skeleton, const Site& site, const Mat3& R_heading_sit
   }
 }
 
+bool is_on_trunk_or_head(const Sensor& sensor) {
+  using namespace standard_joint;
+  const int joint = all_sites()[static_cast<std::size_t>(sensor.site)].orientation;
+  return joint == root || (joint >= lowerback && joint <= head);
+}
+
+std::vector<Sensor> with_usable_orientations(std::vector<Sensor> sensors) {
+  const bool is_usable = std::any_of(sensors.begin(), sensors.end(), [](const Sensor& sensor) {
+    return sensor.channels.has(Channel::orientation) && is_on_trunk_or_head(sensor);
+  });
+  constexpr Channels kOthers = Channel::specific_force | Channel::angular_velocity |
+                               Channel::gravity_direction | Channel::position;
+  for (Sensor& sensor : sensors)
+    if (!is_usable) sensor.channels = sensor.channels & kOthers;
+  return sensors;
+}
+
 }  // namespace
 
 std::vector<Sensor> with_turning(std::vector<Sensor> sensors) {
+  sensors = with_usable_orientations(std::move(sensors));
   for (Sensor& sensor : sensors)
     if (sensor.channels.has(Channel::orientation))
       sensor.channels = sensor.channels | Channel::gravity_direction | Channel::angular_velocity;
   return sensors;
 }
+
+TurningOf::TurningOf(std::vector<Sensor> sensors)
+    : sensors_(with_usable_orientations(std::move(sensors))) {}
 
 Reading TurningOf::operator()(Reading reading) {
   const Reading measured = reading;

@@ -11,15 +11,16 @@
 
 namespace sparse_mocap::path_regression {
 
-// Orientations tell what gyroscopes do. What sensors with an orientation give, together with what
-// follows from it: gravity direction and angular velocity where they have none of their own.
+// The sensors as orientations are used: together with the gravity direction and the angular
+// velocity that follow from one, and without any where none is on trunk or head, whose heading
+// limbs do not tell.
 std::vector<Sensor> with_turning(std::vector<Sensor> sensors);
 
 // Fills that in, reading by reading.
 class TurningOf {
  public:
   // sensors: as they were before with_turning().
-  explicit TurningOf(std::vector<Sensor> sensors) : sensors_(std::move(sensors)) {}
+  explicit TurningOf(std::vector<Sensor> sensors);
 
   Reading operator()(Reading reading);
   void reset() { before_ = {}; }

@@ -78,6 +78,17 @@ TEST(PlaceOrientedLimbs, LeavesPosesWithoutOrientationsAlone) {
   EXPECT_EQ(points, before);
 }
 
+TEST(WithTurning, LeavesOrientationsOutWhereNothingTellsTheHeading) {
+  const auto alone =
+      with_turning({{find_site("left_wrist"), 1.0, Channel::specific_force | Channel::orientation},
+                    {find_site("right_ankle"), 1.0, Channel::orientation}});
+  EXPECT_EQ(alone[0].channels, Channels(Channel::specific_force));
+  EXPECT_TRUE(alone[1].channels.is_empty());
+  EXPECT_EQ(with_turning(worn())[0].channels, Channel::specific_force | Channel::orientation |
+                                                  Channel::gravity_direction |
+                                                  Channel::angular_velocity);
+}
+
 TEST(TurningOf, SaysWhatAGyroscopeWould) {
   const JointRotations rest(kNumStandardJoints, Mat3::Identity());
   TurningOf turning(worn());
@@ -93,7 +104,7 @@ TEST(TurningOf, SaysWhatAGyroscopeWould) {
   }
   Reading measured = second;
   measured.gravity_direction.setConstant(0.5);
-  TurningOf own({{find_site("left_wrist"), 1.0,
+  TurningOf own({{find_site("head"), 1.0,
                   Channel::orientation | Channel::gravity_direction | Channel::angular_velocity}});
   EXPECT_EQ(own(measured).gravity_direction.col(0), measured.gravity_direction.col(0));
 }
