@@ -18,7 +18,7 @@ ControlWeights Config::control() const {
 
 const std::vector<PresetInfo>& presets() {
   static const std::vector<PresetInfo> list{
-      {"default", "The paper's method, with the sensors in the search and joint residuals."},
+      {"default", "The paper's method, with the sensors in the search."},
       {"paper", "The paper alone: histories are searched without the sensors."}};
   return list;
 }
@@ -50,7 +50,8 @@ const OptionTable<Config>& options() {
           .integer("max_iterations", &Config::max_iterations, 1, 10'000,
                    "steps of the optimisation, at most")
           .flag("joint_residuals", &Config::joint_residuals,
-                "whether errors of a prediction go together, or each angle's is on its own")
+                "whether errors of a prediction go together where no sensor has an orientation, or "
+                "each angle's is on its own")
           .number("motion_deviation_m", &Config::motion_deviation_m, 0.0, 10.0,
                   "deviation of sensors without a position from how their accelerations move them, "
                   "m a frame; 0: accelerations are not used")

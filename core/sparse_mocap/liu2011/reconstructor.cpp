@@ -31,12 +31,19 @@ retrieval::WeightedPaths as_paths(const std::vector<retrieval::Neighbour>& neare
   return weighted;
 }
 
+// Orientations tell limbs apart that positions leave to the prior.
+Config for_sensors(Config config, const std::vector<Sensor>& sensors) {
+  for (const Sensor& sensor : sensors)
+    if (sensor.channels.has(Channel::orientation)) config.joint_residuals = false;
+  return config;
+}
+
 }  // namespace
 
 Reconstructor::Reconstructor(const Config& config, const MethodContext& context,
                              Direction direction)
     : examples_(context.database, context.body.value_or(context.database->skeleton()), direction),
-      config_(config),
+      config_(for_sensors(config, context.sensors)),
       control_(config.control()),
       num_poses_(config.num_poses(context.database->rate_hz())),
       worn_(worn_sensors(examples_.body(), context.sensors)),

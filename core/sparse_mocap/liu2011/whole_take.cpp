@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <utility>
 
 #include "sparse_mocap/base/ordered_work.hpp"
@@ -87,17 +88,21 @@ std::vector<PoseEstimate> WholeTakeReconstructor::solve(const std::vector<Readin
                                                         const Progress& progress) {
   const std::vector<Reading> reversed(take.rbegin(), take.rend());
   std::array<std::vector<PoseEstimate>, 2> ways;
+  std::atomic<std::size_t> num_solved = 0;
   const auto solved = [&](std::size_t way, const std::stop_token& stop) {
     Reconstructor& method = way == 0 ? forward_ : backward_;
-    const Progress stopping([&](const ProgressReport&) { return !stop.stop_requested(); });
+    const Progress stopping([&](const ProgressReport&) {
+      ++num_solved;
+      return !stop.stop_requested();
+    });
     return solve_live(method, way == 0 ? take : reversed, stopping);
   };
   work_in_order(
       2, num_threads_, solved,
       [&](std::size_t way, std::vector<PoseEstimate> found) { ways[way] = std::move(found); },
-      [&](std::size_t way) { progress.report(way, 3, "reconstructing"); });
+      [&](std::size_t) { progress.report(num_solved, 3 * take.size(), "reconstructing"); });
   std::reverse(ways[1].begin(), ways[1].end());
-  progress.report(2, 3, "smoothing");
+  progress.report(2 * take.size(), 3 * take.size(), "smoothing");
   std::vector<BodyPose> poses;
   std::vector<std::vector<Observation>> observed;
   for (std::size_t t = 0; t < take.size(); ++t) {
