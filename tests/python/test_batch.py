@@ -38,7 +38,9 @@ def test_solves_all_takes_but_the_broken_one(
     assert "1 of 3 takes were not solved" in result.output
     (broken,) = [line for line in result.output.splitlines() if line.startswith("not solved")]
     assert "broken.csv" in broken
-    made = sorted(str(p.relative_to(tmp_path / "out")) for p in (tmp_path / "out").rglob("*.bvh"))
+    made = sorted(
+        p.relative_to(tmp_path / "out").as_posix() for p in (tmp_path / "out").rglob("*.bvh")
+    )
     assert made == ["day 2/second.bvh", "first.bvh"]
 
 
