@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Builds the databases of recorded motion that the benchmarks run on, once.
 
-python tests/bench/databases.py FOLDER
+python tests/bench/databases.py FOLDER COPIED_DATABASE
 
 Needs the recorded data (SPARSE_MOCAP_DATA, see .github/CONTRIBUTING.md). FOLDER gets 30k.smdb,
-100k.smdb, 300k.smdb and 680k.smdb, named by about how many frames they have, and queries.smdb: the
-clips that performances are simulated from, of which no other database has one.
+100k.smdb, 300k.smdb and 680k.smdb, named by about how many frames they have; 5m.smdb, which holds
+time-warped and perturbed copies of the last one's clips (made by the program COPIED_DATABASE, 3 GB);
+and queries.smdb: the clips that performances are simulated from, of which no other database has one.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import fnmatch
 import os
 import random
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -21,6 +23,7 @@ import sparse_mocap
 
 SIZES = {"30k": 30_000, "100k": 100_000, "300k": 300_000}
 ALL = "680k"
+COPIES = "5m"
 QUERY_SHARE = 23  # every so many files
 FOLDERS = ("hdm05", "cmu/asf_amc", "cmu/bvh")
 ARCHIVE = "bandai_namco/bandai_namco_subset.tar.xz"
@@ -65,7 +68,7 @@ def first_files(files: list[Path], frames: dict[str, int], wanted: int) -> list[
     return chosen
 
 
-def main(folder: Path) -> None:
+def main(folder: Path, copied_database: Path) -> None:
     if "SPARSE_MOCAP_DATA" not in os.environ:
         sys.exit("SPARSE_MOCAP_DATA is not set: see .github/CONTRIBUTING.md")
     folder.mkdir(parents=True, exist_ok=True)
@@ -79,7 +82,10 @@ def main(folder: Path) -> None:
         frames[name] = frames.get(name, 0) + clip.end - clip.begin
     for name, wanted in SIZES.items():
         build(folder / f"{name}.smdb", first_files(searched, frames, wanted), copies=True)
+    copies = folder / f"{COPIES}.smdb"
+    if not copies.exists():
+        subprocess.run([copied_database, folder / f"{ALL}.smdb", copies], check=True)
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(Path(sys.argv[1]), Path(sys.argv[2]))

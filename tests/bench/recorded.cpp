@@ -15,9 +15,6 @@ namespace {
 
 using retrieval::FeatureRows;
 
-constexpr int kCopies = 8;  // of the largest database, to make the size 5m
-constexpr Eigen::Index kQueryEach = 7;
-
 std::filesystem::path folder() {
   const char* variable = std::getenv("SPARSE_MOCAP_BENCH_DATABASES");
   return variable == nullptr ? std::filesystem::path() : std::filesystem::path(variable);
@@ -28,7 +25,11 @@ FeatureRows features_of(const MotionDatabase& database, int dimensions) {
   FeatureRows rows = retrieval::database_signals(database, signals);
   if (dimensions == 12) return rows;
   const auto config = path_regression::live_config();
-  const retrieval::FeatureLayout layout(config.features, database.rate_hz());
+  auto parts = config.features;
+  if (dimensions == 48)
+    parts.insert(parts.end(), config.regression_features.begin(),
+                 config.regression_features.begin() + 2);
+  const retrieval::FeatureLayout layout(parts, database.rate_hz());
   std::vector<float> weights;
   for (const auto& signal : signals)
     weights.insert(weights.end(), 3,
@@ -36,38 +37,12 @@ FeatureRows features_of(const MotionDatabase& database, int dimensions) {
   return retrieval::database_features(database, rows, layout, weights);
 }
 
-// Rows as if the motion had gone at another tempo, and a little differently.
-FeatureRows warped(const FeatureRows& rows, float tempo, unsigned seed) {
-  Random random(seed);
-  const auto count = static_cast<Eigen::Index>(static_cast<float>(rows.rows() - 1) / tempo);
-  FeatureRows out(count, rows.cols());
-  for (Eigen::Index r = 0; r < count; ++r) {
-    const float at = static_cast<float>(r) * tempo;
-    const auto before = static_cast<Eigen::Index>(at);
-    const float share = at - static_cast<float>(before);
-    out.row(r) = (1.0F - share) * rows.row(before) + share * rows.row(before + 1);
-    for (auto& value : out.row(r)) value += static_cast<float>(random.in(-0.3, 0.3));
-  }
-  return out;
-}
-
-FeatureRows many_copies(const FeatureRows& rows) {
-  FeatureRows out(0, rows.cols());
-  for (int c = 0; c < kCopies; ++c) {
-    const FeatureRows copy =
-        warped(rows, 0.8F + 0.06F * static_cast<float>(c), static_cast<unsigned>(c));
-    out.conservativeResize(out.rows() + copy.rows(), Eigen::NoChange);
-    out.bottomRows(copy.rows()) = copy;
-  }
-  return out;
-}
-
 }  // namespace
 
 std::vector<std::string> recorded_sizes() {
   std::vector<std::string> sizes;
   if (folder().empty()) return sizes;
-  for (const char* size : {"30k", "100k", "300k", "680k"})
+  for (const char* size : {"30k", "100k", "300k", "680k", "5m"})
     if (std::filesystem::exists(recorded_path(size))) sizes.emplace_back(size);
   return sizes;
 }
@@ -96,15 +71,12 @@ std::vector<Reading> recorded_performances() {
   return all;
 }
 
-SearchedRows searched_rows(const std::string& size, int dimensions) {
-  const bool is_copied = size == "5m";
-  const std::string recorded = is_copied ? recorded_sizes().back() : size;
-  SearchedRows out{features_of(*recorded_database(recorded), dimensions), {}};
-  if (is_copied) out.rows = many_copies(out.rows);
+SearchedRows searched_rows(const std::string& size, int dimensions, int query_each) {
+  SearchedRows out{features_of(*recorded_database(size), dimensions), {}};
   const FeatureRows all = features_of(*MotionDatabase::open(recorded_path("queries")), dimensions);
-  out.queries.resize(all.rows() / kQueryEach, all.cols());
+  out.queries.resize(all.rows() / query_each, all.cols());
   for (Eigen::Index q = 0; q < out.queries.rows(); ++q)
-    out.queries.row(q) = all.row(q * kQueryEach);
+    out.queries.row(q) = all.row(q * query_each);
   return out;
 }
 

@@ -15,7 +15,8 @@
 
 namespace sparse_mocap::testing {
 
-// Names of those that are there, the smallest first: 30k 100k 300k 680k. None without the folder.
+// Names of those that are there, the smallest first: 30k 100k 300k 680k 5m. None without the
+// folder.
 std::vector<std::string> recorded_sizes();
 std::filesystem::path recorded_path(const std::string& size);
 // The one that was asked for last stays open.
@@ -30,7 +31,7 @@ struct SearchedRows {
   retrieval::FeatureRows queries;
 };
 // 12 dimensions: readings, as the paper's method searches them; 24: smoothed readings and their
-// change, as the project's own does. The size 5m: time-warped and perturbed copies of the largest.
-SearchedRows searched_rows(const std::string& size, int dimensions);
+// change, as the project's own does; 48: those and readings of earlier times.
+SearchedRows searched_rows(const std::string& size, int dimensions, int query_each = 7);
 
 }  // namespace sparse_mocap::testing

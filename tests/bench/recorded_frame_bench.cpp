@@ -59,7 +59,7 @@ const bool is_registered = [] {
       benchmark::RegisterBenchmark(("recorded_frame/" + method + "/" + size).c_str(), frame, method,
                                    size)
           ->Unit(benchmark::kMillisecond)
-          ->Iterations(1000);
+          ->Iterations(size == "5m" ? 300 : 1000);
     benchmark::RegisterBenchmark(("recorded_whole_take/path_regression/" + size).c_str(),
                                  whole_take, size)
         ->Unit(benchmark::kMillisecond)

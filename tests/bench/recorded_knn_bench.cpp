@@ -146,9 +146,7 @@ void add(const std::string& name, void (*run)(benchmark::State&, const Case&), c
 }
 
 const bool is_registered = [] {
-  auto sizes = recorded_sizes();
-  if (!sizes.empty()) sizes.emplace_back("5m");
-  for (const auto& size : sizes)
+  for (const auto& size : recorded_sizes())
     for (const int dimensions : {12, 24}) {
       const bool is_largest = size == "5m";
       add("sparse_mocap", knn_search, {size, dimensions, 0}, is_largest ? 100 : 500);
