@@ -17,12 +17,14 @@ from ._core import Clip, MotionDatabase, store_section
 from .quality import NUM_JOINTS, SECTION, USUAL, VERSION, Evidence, Floats, evidence_of, measures_of
 from .reconstruction import reconstruct
 from .take import SensorRecord, Take
+from .workers import processors
 
 __all__ = ["calibrate_quality"]
 
 SITES = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
 
-_SHARE = 0.025  # of the database's frames that are reconstructed for a calibration
+_SHARE = 0.025  # of the database's frames that are reconstructed for a calibration,
+_MOST_FRAMES = 4500  # which need not grow with the database for good
 _LONGEST_S, _FEWEST_CLIPS = 5.0, 20
 _SETTLES = slice(8, -4)  # frames of a clip in which its neighbours in a row of clips are not felt
 _TRUST = 20.0  # how many reconstructions what is usual counts for
@@ -37,8 +39,12 @@ def calibrate_quality(database: str | os.PathLike[str]) -> None:
     """
     opened = MotionDatabase(database)
     rows, logarithms, typical = [], [], []
-    for kind, tests, excluded in _held_out(opened):
-        for evidence, share in _reconstructed(opened, tests, excluded):
+    held_out = _held_out(opened)
+    with processors() as workers:
+        begun = [workers.submit(_reconstructed, opened, *held[1:]) for held in held_out]
+        found = [reconstructed.result() for reconstructed in begun]
+    for (kind, *_), reconstructions in zip(held_out, found, strict=True):
+        for evidence, share in reconstructions:
             rows.append(measures_of(evidence))
             logarithms.append(np.log(share))
             if kind == "source":
@@ -53,7 +59,7 @@ def calibrate_quality(database: str | os.PathLike[str]) -> None:
         measures.T @ residuals,
     )
     spread_m, misfit_mps2 = np.median(typical, axis=0)
-    found = {
+    learned = {
         "coefficients": [float(value) for value in np.array(USUAL) + change],
         "spread_m": float(spread_m),
         "misfit_mps2": float(misfit_mps2),
@@ -61,7 +67,7 @@ def calibrate_quality(database: str | os.PathLike[str]) -> None:
     store_section(
         database,
         SECTION,
-        {"calibration": json.dumps(found)},
+        {"calibration": json.dumps(learned)},
         version=VERSION,
         rows=opened.rows_hash,
     )
@@ -76,7 +82,7 @@ def _held_out(database: MotionDatabase) -> list[tuple[str, list[int], list[int]]
     if len(originals) < _FEWEST_CLIPS:
         return []
     chance = np.random.default_rng(0)
-    frames = _SHARE * database.num_frames / 3.0
+    frames = min(_SHARE * database.num_frames, _MOST_FRAMES) / 3.0
     found = []
     for kind in ("source", "actor", "motion_class"):
         labels = [getattr(clip, kind) for clip in clips]

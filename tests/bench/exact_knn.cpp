@@ -54,7 +54,14 @@ std::string fault(const FeatureRows& rows, const Eigen::RowVectorXf& query,
     is_found[static_cast<std::size_t>(row)] = true;
   }
   const double farthest = squared_distance(rows, found.back().row, query);
+  const auto near = static_cast<float>(farthest * (1.0 + 10.0 * kRounding));
+  const Eigen::RowVectorXf is_known = query.array().isNaN().select(
+      Eigen::RowVectorXf::Zero(query.size()), Eigen::RowVectorXf::Ones(query.size()));
+  const Eigen::RowVectorXf asked =
+      query.array().isNaN().select(Eigen::RowVectorXf::Zero(query.size()), query);
   for (Eigen::Index r = 0; r < rows.rows(); ++r) {
+    // In floats first: most rows are far away.
+    if ((rows.row(r) - asked).cwiseProduct(is_known).squaredNorm() > near) continue;
     if (is_found[static_cast<std::size_t>(r)]) continue;
     const double exact = squared_distance(rows, r, query);
     if (exact < farthest * (1.0 - kRounding)) return "a nearer row is left out";
