@@ -5,8 +5,9 @@ python tests/bench/databases.py FOLDER COPIED_DATABASE
 
 Needs the recorded data (SPARSE_MOCAP_DATA, see .github/CONTRIBUTING.md). FOLDER gets 30k.smdb,
 100k.smdb, 300k.smdb and 680k.smdb, named by about how many frames they have; 5m.smdb, which holds
-time-warped and perturbed copies of the last one's clips (made by the program COPIED_DATABASE, 3 GB);
-and queries.smdb: the clips that performances are simulated from, of which no other database has one.
+time-warped and perturbed copies of the last one's clips (made by the program COPIED_DATABASE, 3
+GB); and queries.smdb: the clips that performances are simulated from, of which no other database
+has one.
 """
 
 from __future__ import annotations
