@@ -8,10 +8,12 @@ import os
 import shutil
 import subprocess
 import sys
+import threading
 import time
 import traceback
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import bpy
@@ -25,10 +27,12 @@ PORT, DATABASE, FOLDER, SERIAL = sys.argv[sys.argv.index("--") + 1 :]
 sys.path.append(SERIAL)
 
 from live_support import DRIVER, OPTIONS  # noqa: E402
-from support import SITES  # noqa: E402
+from support import SITES, raised  # noqa: E402
 
 ui, live_scene = installed.module("ui.registration"), installed.module("scene.live")
+compat = installed.module("scene.compat")
 prompt, jobs = installed.module("scene.prompt"), installed.module("session.job")
+log_file = installed.module("session.log_file")
 CalibrationPanel = installed.module("ui.calibrate").SPARSEMOCAP_PT_calibration
 LivePanel = installed.module("ui.live").SPARSEMOCAP_PT_live
 
@@ -121,6 +125,37 @@ def points() -> np.ndarray:
     return np.array([bone.tail for bone in bones])
 
 
+def press_escape() -> Steps:
+    for value in ("PRESS", "RELEASE"):
+        view()["window"].event_simulate(type="ESC", value=value, x=600, y=400)
+        yield 0.1
+
+
+def escape_live_and_countdown(session: Any) -> Steps:
+    """Neither leaves a preview, a recording or a figure behind."""
+    sensors = installed.module("session.sensors")
+    databases, is_free = sensors.databases, threading.Event()
+    sensors.databases = SimpleNamespace(get=lambda path: is_free.wait() and databases.get(path))
+    assert call(bpy.ops.sparse_mocap.go_live, "INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+    yield 0.2
+    yield from press_escape()
+    is_free.set()
+    yield from until(lambda: jobs.current() is None)
+    yield 0.3
+    sensors.databases = databases
+    assert not session.is_live_wanted
+    assert live_scene.followed() is None
+    assert not bpy.data.armatures
+    bpy.context.scene.sparse_mocap.countdown_s = 50
+    done = call(bpy.ops.sparse_mocap.record_or_stop, "INVOKE_DEFAULT", True)
+    assert done == {"RUNNING_MODAL"}
+    yield from until(lambda: prompt._handler is not None)
+    yield from press_escape()
+    yield from until(lambda: prompt._handler is None)
+    yield 0.5
+    assert session.state.recording is None
+
+
 def calibrate_and_escape(session: Any) -> Steps:
     """What to do stands in the viewport until Esc, which leaves nothing."""
     done = call(bpy.ops.sparse_mocap.calibrate_sensors, "INVOKE_DEFAULT", True)
@@ -132,13 +167,55 @@ def calibrate_and_escape(session: Any) -> Steps:
     call(bpy.ops.view3d.view_selected)
     yield 0.7
     picture("calibrating.png")
-    window = view()["window"]
-    for value in ("PRESS", "RELEASE"):
-        window.event_simulate(type="ESC", value=value, x=600, y=400)
-        yield 0.1
+    yield from press_escape()
     yield from until(lambda: jobs.current() is None and session.state.recording is None)
     yield from until(lambda: prompt._handler is None)
     assert bpy.context.scene.sparse_mocap.calibration == ""
+
+
+def render_meanwhile() -> Steps:
+    """The pose stays while a render runs, nothing else begins; the preview goes on afterwards."""
+    scene = bpy.context.scene
+    scene.render.engine, scene.cycles.samples = "CYCLES", 2000
+    scene.cycles.use_denoising = False
+    scene.render.resolution_x, scene.render.resolution_y = 320, 200
+    bpy.context.preferences.view.render_display_type = "NONE"
+    scene.camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    scene.collection.objects.link(scene.camera)
+    yield 0.1
+    assert call(bpy.ops.render.render, "INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+    yield from until(compat.is_rendering)
+    num_shown, pose = len(shown_late_s), points()
+    said = raised(RuntimeError, lambda: call(bpy.ops.sparse_mocap.reconstruct))
+    assert "render is running" in said
+    yield 0.3
+    assert compat.is_rendering(), "the render was too short"
+    assert len(shown_late_s) == num_shown
+    assert np.array_equal(points(), pose)
+    yield from press_escape()  # ends the render
+    yield from until(lambda: not compat.is_rendering())
+    yield from until(lambda: len(shown_late_s) > num_shown + 3)
+    assert live_scene.followed() is not None
+
+
+def second_window(session: Any) -> Steps:
+    """Another window shows the same session, and no second one begins there."""
+    call(bpy.ops.screen.back_to_previous)  # there is no second one beside a full area
+    yield 0.4
+    call(bpy.ops.wm.window_new)
+    yield 0.5
+    first, second = bpy.context.window_manager.windows[:2]
+    with bpy.context.temp_override(window=second):
+        assert "still connected" in raised(RuntimeError, bpy.ops.sparse_mocap.connect_sensors)
+    num_shown = len(shown_late_s)
+    yield from until(lambda: len(shown_late_s) > num_shown + 3)
+    assert installed.module("session.live").current() is session
+    with bpy.context.temp_override(window=second):
+        bpy.ops.wm.window_close()
+    yield 0.3
+    assert list(bpy.context.window_manager.windows) == [first]
+    call(bpy.ops.screen.screen_full_area)
+    yield 0.4
 
 
 def play() -> Steps:
@@ -157,10 +234,13 @@ def play() -> Steps:
     session = installed.module("session.live").current()
     yield from until(lambda: session.state.error or len(session.state.sensors) == len(SITES))
     assert session.state.error == "", session.state.error
+    yield from escape_live_and_countdown(session)
     assert call(bpy.ops.sparse_mocap.go_live, "INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
     yield from until(lambda: len(shown_late_s) > 5)
     call(bpy.ops.view3d.view_selected)
     yield from calibrate_and_escape(session)
+    yield from render_meanwhile()
+    yield from second_window(session)
     call(bpy.ops.view3d.view_selected)
     call(bpy.ops.sparse_mocap.record_take)
     yield 0.7
@@ -196,6 +276,7 @@ def tick() -> float | None:
         return None
     except BaseException:
         traceback.print_exc()
+        print(*log_file.last_lines(5), sep="\n")  # Blender prints no report of what failed
         sys.stdout.flush()
         os._exit(1)
 
