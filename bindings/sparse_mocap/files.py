@@ -43,8 +43,12 @@ def replaced(path: str | os.PathLike[str], *, is_private: bool = False) -> Itera
     except BaseException as error:
         with suppress(OSError):
             temporary.unlink()
-        is_temporary = isinstance(error, OSError) and error.filename in (None, name)
-        if is_temporary and error.errno is not None:  # a full disk, for one
+        # A full disk, for one: report the target here as well.
+        if (
+            isinstance(error, OSError)
+            and error.filename in (None, name)
+            and error.errno is not None
+        ):
             raise type(error)(error.errno, error.strerror, str(target)) from None
         raise
 
