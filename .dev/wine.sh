@@ -42,7 +42,7 @@ test_windows() {
 # test_windows_python VERSION: the tests of the package and of the add-on's part without Blender.
 test_windows_python() {
   cd "$ROOT"
-  in_windows_python "$1" -m pytest -q -p no:cacheprovider -c bindings/pyproject.toml \
+  ALONE=1 in_windows_python "$1" -m pytest -q -p no:cacheprovider -c bindings/pyproject.toml \
     --rootdir . tests/python tests/blender/session
 }
 
@@ -132,7 +132,8 @@ windows_path() {
 windows_folders() { printf 'Z:%s;' "$@"; }
 
 # in_wine PROGRAM [ARG...]: the exit code is the program's. CPython there wants pipes at both ends, and
-# ends lines as Windows does.
+# ends lines as Windows does. With ALONE set, programs that it left running end with it: a test that
+# failed may leave one, which would hold the pipe for ever.
 in_wine() {
   wine_status=$(mktemp)
   : | {
@@ -142,6 +143,7 @@ in_wine() {
       PYTHONUNBUFFERED=1 \
       /usr/lib/wine/wine64 "$@" 2>&1
     echo $? >"$wine_status"
+    [ -z "${ALONE:-}" ] || WINEPREFIX="$WINE_BUILD/wine" /usr/lib/wine/wineserver64 -k
   } | sed -u 's/\r$//'
   wine_code=$(cat "$wine_status")
   rm -f "$wine_status"

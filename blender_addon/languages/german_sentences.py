@@ -40,7 +40,7 @@ SENTENCES = {
     "{count} sensors": "{count} Sensoren",
     "Choose a take first": "Zuerst eine Aufnahme wählen",
     "Train or open a model first": "Zuerst ein Modell trainieren oder öffnen",
-    "Train from the motion database": "Aus der Bewegungsdatenbank trainieren",
+    "Train on the database": "Mit der Datenbank trainieren",
     "Opening the model": "Das Modell wird geöffnet",
     "One phone": "Ein Telefon",
     "{first} to {last}": "{first} bis {last}",

@@ -65,7 +65,7 @@ def _contents(layout: UILayout, context: Context, settings: SPARSEMOCAP_PG_setti
 
 def _form(box: UILayout, context: Context, settings: SPARSEMOCAP_PG_settings) -> None:
     training = settings.training
-    box.label(text="Train from the motion database")
+    box.label(text="Train on the database")
     column = box.column()
     column.use_property_split = True
     column.use_property_decorate = False
