@@ -37,7 +37,7 @@ def test_the_report_says_what_is_open_and_what_went_wrong():
     text = _report()
     assert f"Blender {bpy.app.version_string}" in text
     assert re.search(r"Database: \d+ clips, ", text)
-    assert "Method: path_regression, default, no options, live quality" in text
+    assert "Method: path_regression, default, no options, best quality" in text
     assert "plays 3.9 s" in text
     assert "Log:" in text
     assert "WARNING not there.csv" in text
