@@ -59,7 +59,7 @@ JointRotations reachable(const Skeleton& skeleton, JointRotations rotations) {
 }
 
 JointRotations turned(const Skeleton& skeleton, JointRotations rotations,
-                      const Eigen::VectorXd& step) {
+                      const Eigen::Ref<const Eigen::VectorXd>& step) {
   for (int j = 0; j < skeleton.num_joints(); ++j) {
     const Joint& joint = skeleton.joint(j);
     const double* turn = step.data() + skeleton.angle_begin(j);
@@ -79,10 +79,21 @@ JointRotations turned(const Skeleton& skeleton, JointRotations rotations,
 
 StepJacobians step_jacobians(const Skeleton& skeleton, const JointRotations& rotations,
                              const JointTransforms& transforms) {
+  const Eigen::Index rows = 3 * skeleton.num_joints();
+  StepJacobians out{Eigen::MatrixXd(rows, skeleton.num_angles()),
+                    Eigen::MatrixXd(rows, skeleton.num_angles())};
+  put_step_jacobians(skeleton, rotations, transforms, out.ends, out.turns);
+  return out;
+}
+
+void put_step_jacobians(const Skeleton& skeleton, const JointRotations& rotations,
+                        const JointTransforms& transforms, Eigen::Ref<Eigen::MatrixXd> ends,
+                        Eigen::Ref<Eigen::MatrixXd> turns) {
   const int n = skeleton.num_joints();
-  StepJacobians out{Eigen::MatrixXd::Zero(3 * n, skeleton.num_angles()),
-                    Eigen::MatrixXd::Zero(3 * n, skeleton.num_angles())};
-  std::vector<Mat3> axes;
+  ends.setZero();
+  turns.setZero();
+  static thread_local std::vector<Mat3> axes;
+  axes.clear();
   for (std::size_t j = 0; j < rotations.size(); ++j)
     axes.push_back(step_axes(skeleton.joints()[j], rotations[j], transforms.R_world_joint[j]));
   for (int j = 0; j < n; ++j) {
@@ -92,12 +103,11 @@ StepJacobians step_jacobians(const Skeleton& skeleton, const JointRotations& rot
       const int begin = skeleton.angle_begin(a);
       for (int i = 0; i < static_cast<int>(skeleton.joint(a).axes.size()); ++i) {
         const Vec3 axis = axes[static_cast<std::size_t>(a)].col(i);
-        out.turns.block<3, 1>(3 * j, begin + i) = axis;
-        out.ends.block<3, 1>(3 * j, begin + i) = axis.cross(arm);
+        turns.block<3, 1>(3 * j, begin + i) = axis;
+        ends.block<3, 1>(3 * j, begin + i) = axis.cross(arm);
       }
     }
   }
-  return out;
 }
 
 }  // namespace sparse_mocap

@@ -19,7 +19,7 @@ JointRotations reachable(const Skeleton& skeleton, JointRotations rotations);
 // The pose turned on by a step (rad, as many numbers as the skeleton has angles): joints with three
 // axes by a rotation vector in the frame of their axes, the others by adding to their angles.
 JointRotations turned(const Skeleton& skeleton, JointRotations rotations,
-                      const Eigen::VectorXd& step);
+                      const Eigen::Ref<const Eigen::VectorXd>& step);
 
 // How a pose moves under a small step, at step 0: ends are d(end of every joint) (m/rad), turns
 // d(rotation vector of every joint in the world); 3 joints x angles each. The root's pivot stays.
@@ -28,5 +28,8 @@ struct StepJacobians {
 };
 StepJacobians step_jacobians(const Skeleton& skeleton, const JointRotations& rotations,
                              const JointTransforms& transforms);
+void put_step_jacobians(const Skeleton& skeleton, const JointRotations& rotations,
+                        const JointTransforms& transforms, Eigen::Ref<Eigen::MatrixXd> ends,
+                        Eigen::Ref<Eigen::MatrixXd> turns);
 
 }  // namespace sparse_mocap

@@ -6,11 +6,13 @@
 
 namespace sparse_mocap::path_regression {
 
-BandedSystem::BandedSystem(int num_blocks, int block_size)
-    : block_size_(block_size),
-      blocks_(static_cast<std::size_t>(num_blocks) * (kReach + 1),
-              Eigen::MatrixXd::Zero(block_size, block_size)),
-      right_(static_cast<std::size_t>(num_blocks), Eigen::VectorXd::Zero(block_size)) {}
+void BandedSystem::clear(int num_blocks, int block_size) {
+  block_size_ = block_size;
+  blocks_.resize(static_cast<std::size_t>(num_blocks) * (kReach + 1));
+  right_.resize(static_cast<std::size_t>(num_blocks));
+  for (auto& block : blocks_) block.setZero(block_size, block_size);
+  for (auto& right : right_) right.setZero(block_size);
+}
 
 Eigen::MatrixXd& BandedSystem::block(int row, int column) {
   return blocks_[static_cast<std::size_t>(row * (kReach + 1) + row - column)];
@@ -34,8 +36,8 @@ bool BandedSystem::decompose() {
     Eigen::MatrixXd& diagonal = block(i, i);
     for (int k = std::max(0, i - kReach); k < i; ++k)
       diagonal.selfadjointView<Eigen::Lower>().rankUpdate(block(i, k), -1.0);
-    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(diagonal);
-    if (in_place.info() != Eigen::Success) return false;
+    Eigen::Ref<Eigen::MatrixXd> in_place(diagonal);
+    if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(in_place).info() != Eigen::Success) return false;
   }
   return true;
 }
@@ -45,17 +47,16 @@ bool BandedSystem::solve(Eigen::MatrixXd& unknowns) {
   const int n = num_blocks();
   unknowns.resize(block_size_, n);
   for (int i = 0; i < n; ++i) {
-    Eigen::VectorXd y = right(i);
+    auto y = unknowns.col(i);
+    y = right(i);
     for (int k = std::max(0, i - kReach); k < i; ++k) y.noalias() -= block(i, k) * unknowns.col(k);
     block(i, i).triangularView<Eigen::Lower>().solveInPlace(y);
-    unknowns.col(i) = y;
   }
   for (int i = n; i-- > 0;) {
-    Eigen::VectorXd x = unknowns.col(i);
+    auto x = unknowns.col(i);
     for (int k = i + 1; k <= std::min(n - 1, i + kReach); ++k)
       x.noalias() -= block(k, i).transpose() * unknowns.col(k);
     block(i, i).triangularView<Eigen::Lower>().transpose().solveInPlace(x);
-    unknowns.col(i) = x;
   }
   return true;
 }

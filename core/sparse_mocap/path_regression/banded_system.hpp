@@ -13,7 +13,10 @@ class BandedSystem {
  public:
   static constexpr int kReach = 2;
 
-  BandedSystem(int num_blocks, int block_size);
+  BandedSystem(int num_blocks, int block_size) { clear(num_blocks, block_size); }
+
+  // All zero; of the same size in the same memory.
+  void clear(int num_blocks, int block_size);
 
   int num_blocks() const { return static_cast<int>(right_.size()); }
   int block_size() const { return block_size_; }
@@ -30,7 +33,7 @@ class BandedSystem {
  private:
   bool decompose();
 
-  int block_size_;
+  int block_size_ = 0;
   std::vector<Eigen::MatrixXd> blocks_;
   std::vector<Eigen::VectorXd> right_;
 };

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
+#include <functional>
+#include <stdexcept>
 
 #include "sparse_mocap/base/ordered_work.hpp"
 #include "sparse_mocap/motion/heading.hpp"
@@ -43,41 +44,68 @@ Mat3 rotation_vector_slopes(const Vec3& v) {
 }  // namespace
 
 FitEquations::FitEquations(const Skeleton& skeleton, double frame_time_s, const FitWeights& weights,
-                           std::span<const FittedFrame> frames,
-                           std::span<const FrameTarget> targets, int first_free, bool with_system,
                            int num_threads)
     : skeleton_(skeleton),
       frame_time_s_(frame_time_s),
       weights_(weights),
-      frames_(frames),
-      targets_(targets),
-      first_free_(first_free),
       num_angles_(skeleton.num_angles()),
-      seen_(frames.size()) {
+      num_threads_(num_threads) {
+  if (num_angles_ + kRootUnknowns > kMostUnknowns)
+    throw std::invalid_argument("FitEquations: the skeleton has too many angles");
   for (int j = 0; j < skeleton.num_joints(); ++j)
     if (const auto range = hinge_range(skeleton.joint(j).name)) hinges_.push_back({j, *range});
+}
+
+double FitEquations::value(std::span<const FittedFrame> frames,
+                           std::span<const FrameTarget> targets, int first_free, bool is_begun) {
+  with_system_ = false;
+  evaluate(frames, targets, first_free, is_begun);
+  return value_;
+}
+
+double FitEquations::form(std::span<const FittedFrame> frames, std::span<const FrameTarget> targets,
+                          int first_free, bool is_begun) {
+  with_system_ = true;
+  system_.clear(static_cast<int>(frames.size()) - first_free,
+                num_angles_ + static_cast<int>(kRootUnknowns));
+  evaluate(frames, targets, first_free, is_begun);
+  return value_;
+}
+
+void FitEquations::evaluate(std::span<const FittedFrame> frames,
+                            std::span<const FrameTarget> targets, int first_free, bool is_begun) {
+  frames_ = frames;
+  targets_ = targets;
+  first_free_ = first_free;
+  value_ = 0.0;
+  seen_.resize(frames.size());
   const int n = static_cast<int>(frames.size());
-  if (with_system) system_.emplace(n - first_free, num_angles_ + static_cast<int>(kRootUnknowns));
-  const auto each_frame = [&](int begin, const auto& work) {
+  const auto each_frame = [&](int begin, void (FitEquations::*work)(int)) {
     constexpr std::size_t kPiece = 64;
-    in_pieces(static_cast<std::size_t>(n - begin), kPiece, num_threads,
-              [&](std::size_t i) { work(begin + static_cast<int>(i)); });
+    const auto one = [this, begin, work](std::size_t i) {
+      (this->*work)(begin + static_cast<int>(i));
+    };
+    in_pieces(static_cast<std::size_t>(n - begin), kPiece, num_threads_, std::ref(one));
   };
-  each_frame(std::max(0, first_free - BandedSystem::kReach), [&](int t) { see(t); });
+  each_frame(is_begun ? first_free : std::max(0, first_free - BandedSystem::kReach),
+             &FitEquations::see);
   for (int t = first_free; t < n; ++t) add_frame(t);
-  if (system_) each_frame(first_free, [&](int t) { add_points_to_system(t); });
+  if (with_system_) each_frame(first_free, &FitEquations::add_points_to_system);
 }
 
 void FitEquations::see(int t) {
   Seen& seen = seen_[static_cast<std::size_t>(t)];
   const auto& rotations = frames_[static_cast<std::size_t>(t)].rotations;
   forward_kinematics(skeleton_, Vec3::Zero(), rotations, seen.pose);
-  seen.points = pose_points(seen.pose, weights_.lever_m);
-  if (!system_ || !is_free(t)) return;
+  put_pose_points(seen.pose, weights_.lever_m, seen.points);
+  if (!with_system_ || !is_free(t)) return;
   seen.residual.setZero(seen.points.size());
-  const auto [ends, turns] = step_jacobians(skeleton_, rotations, seen.pose);
-  seen.jacobian.resize(2 * ends.rows(), ends.cols());
-  seen.jacobian << ends, std::sqrt(2.0) * weights_.lever_m * turns;
+  seen.products.fill(0.0);
+  const Eigen::Index rows = 3 * skeleton_.num_joints();
+  seen.jacobian.resize(2 * rows, num_angles_);
+  put_step_jacobians(skeleton_, rotations, seen.pose, seen.jacobian.topRows(rows),
+                     seen.jacobian.bottomRows(rows));
+  seen.jacobian.bottomRows(rows) *= std::sqrt(2.0) * weights_.lever_m;
 }
 
 void FitEquations::add_frame(int t) {
@@ -116,13 +144,13 @@ void FitEquations::add_points(double weight, int t, std::span<const double> fact
                               const Eigen::VectorXd* target) {
   if (weight <= 0.0) return;
   const auto seen = [&](std::size_t k) -> Seen& { return seen_[static_cast<std::size_t>(t) - k]; };
-  Eigen::VectorXd residual = factors[0] * seen(0).points;
-  for (std::size_t k = 1; k < factors.size(); ++k) residual += factors[k] * seen(k).points;
-  if (target != nullptr) residual -= *target;
-  value_ += weight * residual.squaredNorm();
-  if (!system_) return;
+  residual_ = factors[0] * seen(0).points;
+  for (std::size_t k = 1; k < factors.size(); ++k) residual_ += factors[k] * seen(k).points;
+  if (target != nullptr) residual_ -= *target;
+  value_ += weight * residual_.squaredNorm();
+  if (!with_system_) return;
   for (std::size_t k = 0; k < factors.size() && is_free(t - static_cast<int>(k)); ++k) {
-    seen(k).residual += weight * factors[k] * residual;
+    seen(k).residual += weight * factors[k] * residual_;
     for (std::size_t l = k; l < factors.size() && is_free(t - static_cast<int>(l)); ++l)
       seen(k).products[l - k] += weight * factors[k] * factors[l];
   }
@@ -130,11 +158,12 @@ void FitEquations::add_points(double weight, int t, std::span<const double> fact
 
 // All terms of points at once: products of jacobians are what a fit costs most.
 void FitEquations::add_points_to_system(int t) {
-  const Seen& seen = seen_[static_cast<std::size_t>(t)];
+  Seen& seen = seen_[static_cast<std::size_t>(t)];
   const int row = t - first_free_;
-  system_->right(row).head(num_angles_) -= pulled(seen, seen.residual);
+  pull(seen);
+  system_.right(row).head(num_angles_).noalias() -= seen.jacobian.transpose() * seen.pull;
   const auto corner = [&](int column) {
-    return system_->block(row, column).topLeftCorner(num_angles_, num_angles_);
+    return system_.block(row, column).topLeftCorner(num_angles_, num_angles_);
   };
   corner(row).selfadjointView<Eigen::Lower>().rankUpdate(seen.jacobian.transpose(),
                                                          seen.products[0]);
@@ -146,20 +175,20 @@ void FitEquations::add_points_to_system(int t) {
   }
 }
 
-// d points^T residual. Of the tips only the part that turns their joint counts: for each axis a of
-// a joint and its tip's residual r the moment a x r.
-Eigen::VectorXd FitEquations::pulled(const Seen& seen, const Eigen::VectorXd& residual) const {
+// What the jacobian's transpose is multiplied with to be d points^T residual. Of the tips only the
+// part that turns their joint counts: for each axis a of a joint and its tip's residual r the
+// moment a x r.
+void FitEquations::pull(Seen& seen) const {
   const Eigen::Index ends = 3 * skeleton_.num_joints();
-  Eigen::VectorXd pull(2 * ends);
-  pull.head(ends) = residual.head(ends);
+  seen.pull.resize(2 * ends);
+  seen.pull.head(ends) = seen.residual.head(ends);
   for (Eigen::Index j = 0; j < skeleton_.num_joints(); ++j) {
     Vec3 moment = Vec3::Zero();
     const Mat3& R = seen.pose.R_world_joint[static_cast<std::size_t>(j)];
     for (Eigen::Index a = 0; a < 3; ++a)
-      moment += R.col(a).cross(Vec3(residual.segment<3>(ends + 9 * j + 3 * a)));
-    pull.segment<3>(ends + 3 * j) = moment / std::sqrt(2.0);
+      moment += R.col(a).cross(Vec3(seen.residual.segment<3>(ends + 9 * j + 3 * a)));
+    seen.pull.segment<3>(ends + 3 * j) = moment / std::sqrt(2.0);
   }
-  return seen.jacobian.transpose() * pull;
 }
 
 void FitEquations::add_inclination(int t) {
@@ -172,13 +201,13 @@ void FitEquations::add_inclination(int t) {
       return seen.pose.end[static_cast<std::size_t>(j)];
     };
     const double rise = kUp.dot(at(joint) - at(parent));
-    const Eigen::VectorXd residual =
-        Eigen::VectorXd::Constant(1, rise - target.rises_m[static_cast<Eigen::Index>(k)]);
-    Eigen::MatrixXd jacobian = no_share(1);
-    if (system_)
-      jacobian.leftCols(num_angles_) = kUp.transpose() * (seen.jacobian.middleRows(3 * joint, 3) -
-                                                          seen.jacobian.middleRows(3 * parent, 3));
-    add_small(weights_.inclination, residual, {{t, std::move(jacobian)}});
+    Share share{t, no_share(1)};
+    if (with_system_)
+      for (Eigen::Index axis = 0; axis < 3; ++axis)
+        share.jacobian.leftCols(num_angles_) += kUp[axis] * (seen.jacobian.row(3 * joint + axis) -
+                                                             seen.jacobian.row(3 * parent + axis));
+    add_small(weights_.inclination, SmallResidual::Constant(1, rise - target.rises_m[k]),
+              {&share, 1});
   }
 }
 
@@ -194,44 +223,47 @@ void FitEquations::add_hinges(int t) {
     const double beyond =
         angle - std::clamp(angle, range.least_rad + kMargin_rad, range.most_rad - kMargin_rad);
     if (beyond == 0.0) continue;
-    Eigen::MatrixXd jacobian = no_share(1);
-    jacobian(0, skeleton_.angle_begin(joint)) = 1.0;
-    add_small(weights_.hinge, Eigen::VectorXd::Constant(1, beyond), {{t, std::move(jacobian)}});
+    Share share{t, no_share(1)};
+    share.jacobian(0, skeleton_.angle_begin(joint)) = 1.0;
+    add_small(weights_.hinge, SmallResidual::Constant(1, beyond), {&share, 1});
   }
 }
 
 // Position and heading of the root: as the retrieved motions have them, and smooth.
 void FitEquations::add_root_terms(int t) {
-  const auto frame = [&](int at) -> const FittedFrame& {
-    return frames_[static_cast<std::size_t>(at)];
-  };
   const retrieval::RootRates& rates = targets_[static_cast<std::size_t>(t)].root;
-  const auto share = [&](int at, double factor) {
-    Eigen::MatrixXd jacobian = no_share(kRootUnknowns);
-    jacobian.rightCols(kRootUnknowns).diagonal().setConstant(factor);
-    return Share{at, std::move(jacobian)};
-  };
-  const auto stacked = [&](int at) {
-    return Eigen::Vector4d(frame(at).root_position.x(), frame(at).root_position.y(),
-                           frame(at).root_position.z(), frame(at).yaw_rad);
-  };
-  Eigen::VectorXd height = Eigen::VectorXd::Constant(1, stacked(t)[1] - rates.height_m);
-  add_small(weights_.root_height, height, {{t, share(t, 1.0).jacobian.row(1)}});
+  Share height{t, no_share(1)};
+  height.jacobian(0, num_angles_ + 1) = 1.0;
+  add_small(weights_.root_height, SmallResidual::Constant(1, root(t)[1] - rates.height_m),
+            {&height, 1});
   if (t < 1) return;
-  const Mat3 R_world_heading = yaw_rotation(frame(t - 1).yaw_rad);
+  const Mat3 R_world_heading = yaw_rotation(frames_[static_cast<std::size_t>(t - 1)].yaw_rad);
   const Vec3 step =
       R_world_heading * Vec3(rates.velocity_mps.x(), 0.0, rates.velocity_mps.y()) * frame_time_s_;
   const Eigen::Vector4d wanted(step.x(), 0.0, step.z(), rates.yaw_rate_radps * frame_time_s_);
   const Eigen::Vector4d scale(std::sqrt(weights_.root_step), 0.0, std::sqrt(weights_.root_step),
                               std::sqrt(root_turn_weight(t)));
-  Share now = share(t, 1.0), before = share(t - 1, -1.0);
-  before.jacobian.col(num_angles_ + 3).head<3>() -= kUp.cross(step);
-  for (Share* scaled : {&now, &before}) scaled->jacobian = scale.asDiagonal() * scaled->jacobian;
-  add_small(1.0, scale.cwiseProduct(stacked(t) - stacked(t - 1) - wanted),
-            {std::move(now), std::move(before)});
+  std::array<Share, 2> moves{root_share(t, 1.0), root_share(t - 1, -1.0)};
+  moves[1].jacobian.col(num_angles_ + 3).head<3>() -= kUp.cross(step);
+  for (Share& share : moves)
+    for (Eigen::Index row = 0; row < kRootUnknowns; ++row) share.jacobian.row(row) *= scale[row];
+  add_small(1.0, scale.cwiseProduct(root(t) - root(t - 1) - wanted), moves);
   if (t < 2) return;
-  add_small(weights_.root_smoothness, stacked(t) - 2.0 * stacked(t - 1) + stacked(t - 2),
-            {share(t, 1.0), share(t - 1, -2.0), share(t - 2, 1.0)});
+  const std::array<Share, 3> bends{root_share(t, 1.0), root_share(t - 1, -2.0),
+                                   root_share(t - 2, 1.0)};
+  add_small(weights_.root_smoothness, root(t) - 2.0 * root(t - 1) + root(t - 2), bends);
+}
+
+// Position and heading.
+Eigen::Vector4d FitEquations::root(int t) const {
+  const FittedFrame& frame = frames_[static_cast<std::size_t>(t)];
+  return {frame.root_position.x(), frame.root_position.y(), frame.root_position.z(), frame.yaw_rad};
+}
+
+FitEquations::Share FitEquations::root_share(int t, double factor) const {
+  Share share{t, no_share(kRootUnknowns)};
+  share.jacobian.rightCols(kRootUnknowns).diagonal().setConstant(factor);
+  return share;
 }
 
 // Where gyroscopes say how the body turns, retrieved motions have little to say.
@@ -251,15 +283,16 @@ Vec3 FitEquations::foot(int t, int ankle) const {
 }
 
 FitEquations::Share FitEquations::foot_share(int t, int ankle, double factor) const {
-  Eigen::MatrixXd jacobian = no_share(3);
-  if (!system_ || !is_free(t)) return {t, std::move(jacobian)};
+  Share share{t, no_share(3)};
+  if (!with_system_ || !is_free(t)) return share;
   const FittedFrame& frame = frames_[static_cast<std::size_t>(t)];
-  jacobian.leftCols(num_angles_) =
-      yaw_rotation(frame.yaw_rad) *
-      seen_[static_cast<std::size_t>(t)].jacobian.middleRows(3 * ankle, 3);
-  jacobian.middleCols(num_angles_, 3).setIdentity();
-  jacobian.col(num_angles_ + 3) = kUp.cross(foot(t, ankle) - frame.root_position);
-  return {t, factor * jacobian};
+  share.jacobian.leftCols(num_angles_) =
+      yaw_rotation(frame.yaw_rad)
+          .lazyProduct(seen_[static_cast<std::size_t>(t)].jacobian.middleRows<3>(3 * ankle));
+  share.jacobian.middleCols(num_angles_, 3).setIdentity();
+  share.jacobian.col(num_angles_ + 3) = kUp.cross(foot(t, ankle) - frame.root_position);
+  share.jacobian *= factor;
+  return share;
 }
 
 // A foot that stands moves as retrieved ones do and is as high; another one is not lower.
@@ -270,16 +303,16 @@ void FitEquations::add_foot(int t, std::size_t side) {
   const double stands = smooth_step(feet.certainty[row], weights_.stands_from, weights_.stands_at);
   const double above = foot(t, ankle).y() - feet.height_m[row];
   const double pressed = above < 0.0 ? 1.0 : stands;
-  if (pressed > 0.0)
-    add_small(weights_.foot_height * pressed, Eigen::VectorXd::Constant(1, above),
-              {{t, foot_share(t, ankle, 1.0).jacobian.row(1)}});
+  if (pressed > 0.0) {
+    const Share height{t, foot_share(t, ankle, 1.0).jacobian.row(1)};
+    add_small(weights_.foot_height * pressed, SmallResidual::Constant(1, above), {&height, 1});
+  }
   if (t < 1 || stands <= 0.0) return;
   const Vec3 step =
       yaw_rotation(frames_[static_cast<std::size_t>(t - 1)].yaw_rad) * feet.step_m[side];
-  Share before = foot_share(t - 1, ankle, -1.0);
-  if (system_) before.jacobian.col(num_angles_ + 3) -= kUp.cross(step);
-  add_small(weights_.contact * stands, foot(t, ankle) - foot(t - 1, ankle) - step,
-            {foot_share(t, ankle, 1.0), std::move(before)});
+  std::array<Share, 2> shares{foot_share(t, ankle, 1.0), foot_share(t - 1, ankle, -1.0)};
+  if (with_system_) shares[1].jacobian.col(num_angles_ + 3) -= kUp.cross(step);
+  add_small(weights_.contact * stands, foot(t, ankle) - foot(t - 1, ankle) - step, shares);
 }
 
 // Heading and pose together turn a joint about the vertical as its gyroscope measured, on average
@@ -298,40 +331,45 @@ void FitEquations::add_turning(int t) {
     const Mat3 turn =
         seen_[now].pose.R_world_joint[j] * seen_[last].pose.R_world_joint[j].transpose();
     const Vec3 turned = rotation_vector(turn);
-    const Eigen::VectorXd residual = Eigen::VectorXd::Constant(
-        1, frames_[now].yaw_rad - frames_[last].yaw_rad + turned.y() - measured);
-    const auto share = [&](int at, const Eigen::RowVector3d& slope, double factor) {
-      Eigen::MatrixXd jacobian = no_share(1);
-      if (!system_ || !is_free(at)) return Share{at, std::move(jacobian)};
-      const Eigen::Index turns = 3 * (skeleton_.num_joints() + joint);
-      jacobian.leftCols(num_angles_) =
-          slope * seen_[static_cast<std::size_t>(at)].jacobian.middleRows(turns, 3) /
-          (std::sqrt(2.0) * weights_.lever_m);
-      jacobian(0, num_angles_ + 3) = 1.0;
-      return Share{at, factor * jacobian};
-    };
+    const double off = frames_[now].yaw_rad - frames_[last].yaw_rad + turned.y() - measured;
     const Mat3 slopes = rotation_vector_slopes(turned);
-    add_small(weights_.turning, residual,
-              {share(t, slopes.row(1), 1.0), share(t - 1, slopes.col(1).transpose(), -1.0)});
+    const std::array<Share, 2> shares{turning_share(t, joint, slopes.row(1), 1.0),
+                                      turning_share(t - 1, joint, slopes.col(1).transpose(), -1.0)};
+    add_small(weights_.turning, SmallResidual::Constant(1, off), shares);
   }
 }
 
-void FitEquations::add_small(double weight, const Eigen::VectorXd& residual,
-                             std::vector<Share> shares) {
+FitEquations::Share FitEquations::turning_share(int t, int joint, const Eigen::RowVector3d& slope,
+                                                double factor) const {
+  Share share{t, no_share(1)};
+  if (!with_system_ || !is_free(t)) return share;
+  const Eigen::MatrixXd& jacobian = seen_[static_cast<std::size_t>(t)].jacobian;
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    share.jacobian.leftCols(num_angles_) +=
+        slope[axis] * jacobian.row(3 * (skeleton_.num_joints() + joint) + axis);
+  share.jacobian /= std::sqrt(2.0) * weights_.lever_m;
+  share.jacobian(0, num_angles_ + 3) = 1.0;
+  share.jacobian *= factor;
+  return share;
+}
+
+void FitEquations::add_small(double weight, const SmallResidual& residual,
+                             std::span<const Share> shares) {
   if (weight <= 0.0) return;
   value_ += weight * residual.squaredNorm();
-  if (!system_) return;
+  if (!with_system_) return;
   for (std::size_t k = 0; k < shares.size() && is_free(shares[k].frame); ++k) {
     const int row = shares[k].frame - first_free_;
-    system_->right(row).noalias() -= weight * shares[k].jacobian.transpose() * residual;
+    const SmallJacobian weighted = weight * shares[k].jacobian;
+    system_.right(row).noalias() -= weighted.transpose() * residual;
     for (std::size_t l = k; l < shares.size() && is_free(shares[l].frame); ++l)
-      system_->block(row, shares[l].frame - first_free_).noalias() +=
-          weight * shares[k].jacobian.transpose() * shares[l].jacobian;
+      system_.block(row, shares[l].frame - first_free_).noalias() +=
+          weighted.transpose() * shares[l].jacobian;
   }
 }
 
-Eigen::MatrixXd FitEquations::no_share(Eigen::Index rows) const {
-  return Eigen::MatrixXd::Zero(rows, num_angles_ + kRootUnknowns);
+FitEquations::SmallJacobian FitEquations::no_share(Eigen::Index rows) const {
+  return SmallJacobian::Zero(rows, num_angles_ + kRootUnknowns);
 }
 
 }  // namespace sparse_mocap::path_regression

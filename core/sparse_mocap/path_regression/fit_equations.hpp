@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,14 +14,22 @@ namespace sparse_mocap::path_regression {
 
 // The terms of a fit at given frames: their sum, and the Gauss-Newton equations of a step from
 // there. The unknowns of a frame are a step of its pose, of its root's position and of its heading.
+// Frames of the same number are worked on in the same memory.
 class FitEquations {
  public:
+  // The skeleton must outlive it; it has at most kMostUnknowns - 4 angles.
   FitEquations(const Skeleton& skeleton, double frame_time_s, const FitWeights& weights,
-               std::span<const FittedFrame> frames, std::span<const FrameTarget> targets,
-               int first_free, bool with_system, int num_threads = 1);
+               int num_threads = 1);
 
-  double value() const { return value_; }
-  BandedSystem& system() { return *system_; }
+  // The sum of all terms that depend on frames [first_free, end), without or with the equations.
+  // is_begun: frames before first_free are those of the last call.
+  double value(std::span<const FittedFrame> frames, std::span<const FrameTarget> targets,
+               int first_free, bool is_begun = false);
+  double form(std::span<const FittedFrame> frames, std::span<const FrameTarget> targets,
+              int first_free, bool is_begun = false);
+  BandedSystem& system() { return system_; }
+
+  static constexpr int kMostUnknowns = 64;
 
  private:
   // A frame's points, and how they move under a step: d ends, and d turns times the square root of
@@ -34,17 +41,23 @@ class FitEquations {
     // What the terms of points add up to: the factor of jacobian^T times the jacobian of so many
     // frames before, and the residuals that jacobian^T is to be multiplied with.
     std::array<double, BandedSystem::kReach + 1> products{};
-    Eigen::VectorXd residual;
+    Eigen::VectorXd residual, pull;
   };
   struct Hinge {
     int joint;
     HingeRange range;
   };
-  struct Share {  // of a frame in a small residual
+  // A few residuals, and how they depend on a frame's unknowns.
+  using SmallResidual = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 4, 1>;
+  using SmallJacobian =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 4, kMostUnknowns>;
+  struct Share {
     int frame;
-    Eigen::MatrixXd jacobian;
+    SmallJacobian jacobian;
   };
 
+  void evaluate(std::span<const FittedFrame> frames, std::span<const FrameTarget> targets,
+                int first_free, bool is_begun);
   void see(int t);
   void add_frame(int t);
   void add_pose_terms(int t);
@@ -58,23 +71,29 @@ class FitEquations {
   void add_points(double weight, int t, std::span<const double> factors,
                   const Eigen::VectorXd* target);
   void add_points_to_system(int t);
-  void add_small(double weight, const Eigen::VectorXd& residual, std::vector<Share> shares);
-  Eigen::VectorXd pulled(const Seen& seen, const Eigen::VectorXd& residual) const;
+  void add_small(double weight, const SmallResidual& residual, std::span<const Share> shares);
+  void pull(Seen& seen) const;
   Vec3 foot(int t, int ankle) const;
   Share foot_share(int t, int ankle, double factor) const;
+  Share root_share(int t, double factor) const;
+  Share turning_share(int t, int joint, const Eigen::RowVector3d& slope, double factor) const;
+  Eigen::Vector4d root(int t) const;
   bool is_free(int t) const { return t >= first_free_; }
-  Eigen::MatrixXd no_share(Eigen::Index rows) const;
+  SmallJacobian no_share(Eigen::Index rows) const;
 
   const Skeleton& skeleton_;
   double frame_time_s_;
   const FitWeights& weights_;
+  int num_angles_, num_threads_;
   std::span<const FittedFrame> frames_;
   std::span<const FrameTarget> targets_;
-  int first_free_, num_angles_;
+  int first_free_ = 0;
+  bool with_system_ = false;
   std::vector<Hinge> hinges_;
   std::vector<Seen> seen_;
   double value_ = 0.0;
-  std::optional<BandedSystem> system_;
+  Eigen::VectorXd residual_;  // of points
+  BandedSystem system_{0, 0};
 };
 
 }  // namespace sparse_mocap::path_regression

@@ -2,6 +2,7 @@
 #include "sparse_mocap/path_regression/frame_solver.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "sparse_mocap/path_regression/oriented_limbs.hpp"
@@ -68,57 +69,51 @@ int FrameSolver::reach_back() const {
 }
 
 void FrameSolver::search(const SignalWindow& window, std::vector<Neighbour>& out) const {
-  std::vector<float> feature(static_cast<std::size_t>(index_.num_dimensions()));
+  static thread_local std::vector<float> feature;
+  feature.resize(static_cast<std::size_t>(index_.num_dimensions()));
   feature_at(window, features_, column_weights_, feature);
   index_.search(feature, config_.num_neighbours, out);
 }
 
-RetrievedFrame FrameSolver::retrieve(const std::vector<Path>& paths, const SignalWindow& window,
-                                     const Reading& reading) const {
-  WeightedPaths weighted;
-  weighted.paths = best_paths(paths, config_.num_paths);
-  weighted.weights = softmax_weights(weighted.paths, config_.sharpness);
-  RetrievedFrame frame;
-  const Eigen::VectorXd weights =
-      config_.regression_ridge > 0.0 ? regressed(weighted, window) : weighted.weights;
-  MeanPoints mean = mean_points(weighted.paths, weights);
-  place_oriented_limbs(database_->skeleton(), signals_, window.rows.row(window.at),
-                       config_.fit.lever_m, mean.now);
-  if (mean.before.size() > 0) {
-    const Eigen::Index before = std::max(window.at - 1, window.begin);
-    place_oriented_limbs(database_->skeleton(), signals_, window.rows.row(before),
-                         config_.fit.lever_m, mean.before);
-    frame.target.step = mean.now - mean.before;
-  }
-  frame.target.points = std::move(mean.now);
-  frame.target.inclination = inclination_target(database_->skeleton(), reading, signals_);
-  frame.target.turning = turning_targets(reading, signals_);
+void FrameSolver::retrieve(const std::vector<Path>& paths, const SignalWindow& window,
+                           const Reading& reading, RetrievedFrame& frame) const {
+  static thread_local WeightedPaths weighted;
+  static thread_local Eigen::VectorXd weights;
+  put_best_paths(paths, config_.num_paths, weighted.paths);
+  put_softmax_weights(weighted.paths, config_.sharpness, weighted.weights);
+  weights = weighted.weights;
+  if (config_.regression_ridge > 0.0) put_regressed(weighted, window, weights);
+  put_points(weighted.paths, weights, window, frame.target);
+  put_inclination_target(database_->skeleton(), reading, signals_, frame.target.inclination);
+  put_turning_targets(reading, signals_, frame.target.turning);
   frame.target.root = root_rates(*database_, weighted);
   frame.extremities = extremity_vote(*database_, weighted);
   frame.target.root.height_m = root_height_m(*database_, weighted, standing_heights_);
   frame.target.feet = feet(weighted, window);
-  frame.diagnostics = retrieval_diagnostics(*database_, weighted, signals_, signal_rows_,
-                                            window.rows.row(window.at));
-  frame.target.agreement = agreement(frame.diagnostics.at("spread_m"), config_.wide_spread_m);
-  return frame;
+  put_retrieval_diagnostics(*database_, weighted, signals_, signal_rows_,
+                            window.rows.row(window.at), frame.diagnostics);
+  frame.target.agreement =
+      agreement(frame.diagnostics.find("spread_m")->second, config_.wide_spread_m);
 }
 
 // The weights by which the regression from signals to poses predicts.
-Eigen::VectorXd FrameSolver::regressed(const WeightedPaths& weighted,
-                                       const SignalWindow& window) const {
+void FrameSolver::put_regressed(const WeightedPaths& weighted, const SignalWindow& window,
+                                Eigen::VectorXd& weights) const {
+  static thread_local Eigen::MatrixXf features;
+  static thread_local Eigen::VectorXf query;
   const Eigen::Index dimensions =
       regression_features_.num_dimensions(static_cast<int>(signals_.size()));
   const auto size = static_cast<std::size_t>(dimensions);
-  Eigen::MatrixXf features(dimensions, static_cast<Eigen::Index>(weighted.paths.size()));
+  features.resize(dimensions, static_cast<Eigen::Index>(weighted.paths.size()));
   for (std::size_t i = 0; i < weighted.paths.size(); ++i) {
     const int frame = weighted.paths[i].frame;
     const Clip& clip = clip_at(*database_, frame);
     feature_at({signal_rows_, clip.begin, clip.end, frame}, regression_features_, column_weights_,
                {features.data() + static_cast<Eigen::Index>(i) * dimensions, size});
   }
-  Eigen::VectorXf query(dimensions);
+  query.resize(dimensions);
   feature_at(window, regression_features_, column_weights_, {query.data(), size});
-  return regression_weights(features, query, weighted.weights, config_.regression_ridge);
+  put_regression_weights(features, query, weighted.weights, config_.regression_ridge, weights);
 }
 
 // The retrieved frames' vote, together with how still the shanks' own sensors are.
@@ -143,15 +138,35 @@ StandingFeet FrameSolver::feet(const WeightedPaths& weighted, const SignalWindow
   return feet;
 }
 
-// Paths follow one another through the same clips, so most frames stand at an end and before
-// another.
-FrameSolver::MeanPoints FrameSolver::mean_points(const std::vector<Path>& paths,
-                                                 const Eigen::VectorXd& weights) const {
+// The mean of the retrieved poses, its limbs turned as their sensors measure, and how it moves.
+void FrameSolver::put_points(const std::vector<Path>& paths, const Eigen::VectorXd& weights,
+                             const SignalWindow& window, FrameTarget& target) const {
+  static thread_local Eigen::VectorXd before;
+  const auto place = [&](Eigen::Index row, Eigen::VectorXd& points) {
+    place_oriented_limbs(database_->skeleton(), signals_, window.rows.row(row), config_.fit.lever_m,
+                         points);
+  };
+  put_mean_points(paths, weights, target.points, before);
+  place(window.at, target.points);
+  target.step.resize(before.size());
+  if (before.size() == 0) return;
+  place(std::max(window.at - 1, window.begin), before);
+  target.step = target.points - before;
+}
+
+// The weighted means of the points at the paths' ends and, where the fit uses steps, a frame before
+// them inside their clips (otherwise empty). Paths follow one another through the same clips, so
+// most frames stand at an end and before another.
+void FrameSolver::put_mean_points(const std::vector<Path>& paths, const Eigen::VectorXd& weights,
+                                  Eigen::VectorXd& now, Eigen::VectorXd& before) const {
   struct Used {
     int frame;
     double now, before;  // weights
   };
-  std::vector<Used> all;
+  static thread_local std::vector<Used> all;
+  static thread_local JointTransforms pose;
+  static thread_local Eigen::VectorXd angles, points;
+  all.clear();
   const bool with_step = config_.fit.step > 0.0;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const int frame = paths[i].frame;
@@ -160,13 +175,12 @@ FrameSolver::MeanPoints FrameSolver::mean_points(const std::vector<Path>& paths,
     if (with_step)
       all.push_back({std::max(frame - 1, clip_at(*database_, frame).begin), 0.0, weight});
   }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Used& a, const Used& b) { return a.frame < b.frame; });
+  std::sort(all.begin(), all.end(), [](const Used& a, const Used& b) {
+    return std::tie(a.frame, a.now, a.before) < std::tie(b.frame, b.now, b.before);
+  });
   const Skeleton& skeleton = database_->skeleton();
-  MeanPoints mean{Eigen::VectorXd::Zero(12 * skeleton.num_joints()), {}};
-  if (with_step) mean.before.setZero(mean.now.size());
-  JointTransforms pose;
-  Eigen::VectorXd angles;
+  now.setZero(12 * skeleton.num_joints());
+  before.setZero(with_step ? now.size() : 0);
   for (auto used = all.begin(); used != all.end();) {
     Used sum{used->frame, 0.0, 0.0};
     for (; used != all.end() && used->frame == sum.frame; ++used) {
@@ -175,11 +189,10 @@ FrameSolver::MeanPoints FrameSolver::mean_points(const std::vector<Path>& paths,
     }
     angles = database_->angles().row(sum.frame).transpose().cast<double>();
     forward_kinematics(skeleton, Vec3::Zero(), angles, pose);
-    const Eigen::VectorXd points = pose_points(pose, config_.fit.lever_m);
-    mean.now += sum.now * points;
-    if (with_step) mean.before += sum.before * points;
+    put_pose_points(pose, config_.fit.lever_m, points);
+    now += sum.now * points;
+    if (with_step) before += sum.before * points;
   }
-  return mean;
 }
 
 }  // namespace sparse_mocap::path_regression

@@ -37,21 +37,20 @@ class FrameSolver {
 
   // The database frames whose features are nearest to those of the window's row.
   void search(const retrieval::SignalWindow& window, std::vector<retrieval::Neighbour>& out) const;
-  // What paths, all of which end in neighbours of the window's row, and the reading ask for.
-  RetrievedFrame retrieve(const std::vector<retrieval::Path>& paths,
-                          const retrieval::SignalWindow& window, const Reading& reading) const;
+  // What paths, all of which end in neighbours of the window's row, and the reading ask for, in the
+  // memory of an earlier frame.
+  void retrieve(const std::vector<retrieval::Path>& paths, const retrieval::SignalWindow& window,
+                const Reading& reading, RetrievedFrame& frame) const;
 
  private:
-  Eigen::VectorXd regressed(const retrieval::WeightedPaths& weighted,
-                            const retrieval::SignalWindow& window) const;
+  void put_regressed(const retrieval::WeightedPaths& weighted,
+                     const retrieval::SignalWindow& window, Eigen::VectorXd& weights) const;
   retrieval::StandingFeet feet(const retrieval::WeightedPaths& weighted,
                                const retrieval::SignalWindow& window) const;
-  // The weighted means of the points at the paths' ends and one frame before, inside their clips.
-  struct MeanPoints {
-    Eigen::VectorXd now, before;  // before: empty where the fit does not ask for it
-  };
-  MeanPoints mean_points(const std::vector<retrieval::Path>& paths,
-                         const Eigen::VectorXd& weights) const;
+  void put_points(const std::vector<retrieval::Path>& paths, const Eigen::VectorXd& weights,
+                  const retrieval::SignalWindow& window, FrameTarget& target) const;
+  void put_mean_points(const std::vector<retrieval::Path>& paths, const Eigen::VectorXd& weights,
+                       Eigen::VectorXd& now, Eigen::VectorXd& before) const;
 
   std::shared_ptr<const MotionDatabase> database_;
   std::vector<retrieval::Signal> signals_;

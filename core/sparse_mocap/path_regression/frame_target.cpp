@@ -38,37 +38,53 @@ double evened_agreement(double agreement, double before) {
 }
 
 Eigen::VectorXd pose_points(const JointTransforms& pose, double lever_m) {
+  Eigen::VectorXd points;
+  put_pose_points(pose, lever_m, points);
+  return points;
+}
+
+void put_pose_points(const JointTransforms& pose, double lever_m, Eigen::VectorXd& points) {
   const auto n = static_cast<Eigen::Index>(pose.end.size());
-  Eigen::VectorXd points(12 * n);
+  points.resize(12 * n);
   for (Eigen::Index j = 0; j < n; ++j) {
     points.segment<3>(3 * j) = pose.end[static_cast<std::size_t>(j)];
     points.segment<9>(3 * n + 9 * j) =
         lever_m * pose.R_world_joint[static_cast<std::size_t>(j)].reshaped();
   }
-  return points;
 }
 
 InclinationTarget inclination_target(const Skeleton& skeleton, const Reading& reading,
                                      std::span<const retrieval::Signal> signals) {
   InclinationTarget target;
-  std::vector<double> rises_m;
+  put_inclination_target(skeleton, reading, signals, target);
+  return target;
+}
+
+void put_inclination_target(const Skeleton& skeleton, const Reading& reading,
+                            std::span<const retrieval::Signal> signals, InclinationTarget& target) {
+  target.joints.clear();
+  target.rises_m.clear();
   for (const auto& signal : signals) {
     const Site& site = all_sites()[static_cast<std::size_t>(signal.site)];
     if (signal.channel != Channel::gravity_direction || !is_on_limb(site)) continue;
     const Vec3 up = reading.gravity_direction.col(signal.sensor);
     if (!(up.norm() > 0.0)) continue;
     // A sensor on a limb has its x axis along it, away from the body.
-    rises_m.push_back(up.normalized().x() * skeleton.joint(site.carrier).bone.norm());
+    target.rises_m.push_back(up.normalized().x() * skeleton.joint(site.carrier).bone.norm());
     target.joints.push_back(site.carrier);
   }
-  target.rises_m =
-      Eigen::Map<const Eigen::VectorXd>(rises_m.data(), static_cast<Eigen::Index>(rises_m.size()));
-  return target;
 }
 
 std::vector<TurningTarget> turning_targets(const Reading& reading,
                                            std::span<const retrieval::Signal> signals) {
   std::vector<TurningTarget> targets;
+  put_turning_targets(reading, signals, targets);
+  return targets;
+}
+
+void put_turning_targets(const Reading& reading, std::span<const retrieval::Signal> signals,
+                         std::vector<TurningTarget>& targets) {
+  targets.clear();
   for (const auto& signal : signals) {
     if (signal.channel != Channel::gravity_direction) continue;
     const Vec3 up = reading.gravity_direction.col(signal.sensor);
@@ -77,7 +93,6 @@ std::vector<TurningTarget> turning_targets(const Reading& reading,
       targets.push_back(
           {all_sites()[static_cast<std::size_t>(signal.site)].orientation, rate_radps});
   }
-  return targets;
 }
 
 }  // namespace sparse_mocap::path_regression

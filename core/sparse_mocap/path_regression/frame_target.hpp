@@ -18,17 +18,20 @@ namespace sparse_mocap::path_regression {
 // (9 joints), each lever_m long. Ends say nothing of how a bone is turned about itself; tips do.
 // Points of several poses can be averaged, whatever the rotations.
 Eigen::VectorXd pose_points(const JointTransforms& pose, double lever_m);
+void put_pose_points(const JointTransforms& pose, double lever_m, Eigen::VectorXd& points);
 
 // How high limbs' ends should be above their beginnings.
 struct InclinationTarget {
   std::vector<int> joints;
-  Eigen::VectorXd rises_m;
+  std::vector<double> rises_m;
 };
 
 // What gravity directions say of the limbs that carry the sensors. Sensors without one, and those
 // on trunk and head, take no part.
 InclinationTarget inclination_target(const Skeleton& skeleton, const Reading& reading,
                                      std::span<const retrieval::Signal> signals);
+void put_inclination_target(const Skeleton& skeleton, const Reading& reading,
+                            std::span<const retrieval::Signal> signals, InclinationTarget& target);
 
 // How fast a joint turns about the vertical in the world.
 struct TurningTarget {
@@ -39,6 +42,8 @@ struct TurningTarget {
 // What gyroscopes say of the joints that they follow, for sensors that know which way is up too.
 std::vector<TurningTarget> turning_targets(const Reading& reading,
                                            std::span<const retrieval::Signal> signals);
+void put_turning_targets(const Reading& reading, std::span<const retrieval::Signal> signals,
+                         std::vector<TurningTarget>& targets);
 
 // What retrieval and sensors say of one frame.
 struct FrameTarget {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/path_regression/live.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "sparse_mocap/path_regression/banded_system.hpp"
 
 namespace sparse_mocap::path_regression {
@@ -15,21 +18,29 @@ LiveReconstructor::LiveReconstructor(const Config& config, const MethodContext& 
               static_cast<Eigen::Index>(3 * solver_.signals().size())) {}
 
 std::optional<PoseEstimate> LiveReconstructor::step(const Reading& measured) {
+  PoseEstimate estimate;
+  if (!step_into(measured, estimate)) return std::nullopt;
+  return estimate;
+}
+
+bool LiveReconstructor::step_into(const Reading& measured, PoseEstimate& estimate) {
   require_sensors(measured, solver_.num_sensors());
-  const Reading reading = turning_(measured);
+  const Reading& reading = turning_(measured);
   if (num_recent_ == recent_.rows()) {
-    recent_.topRows(num_recent_ - 1) = recent_.bottomRows(num_recent_ - 1).eval();
+    std::copy(recent_.data() + recent_.cols(), recent_.data() + recent_.size(), recent_.data());
     --num_recent_;
   }
-  recent_.row(num_recent_++) = retrieval::signal_row(reading, solver_.signals());
-  waiting_.push_back(reading);
-  if (static_cast<int>(waiting_.size()) <= solver_.look_ahead()) return std::nullopt;
-  return solve_next();
+  retrieval::put_signals(reading, solver_.signals(), recent_.row(num_recent_++));
+  if (num_waiting_ == waiting_.size()) waiting_.emplace_back();
+  waiting_[num_waiting_++] = reading;
+  if (static_cast<int>(num_waiting_) <= solver_.look_ahead()) return false;
+  solve_next(estimate);
+  return true;
 }
 
 std::vector<PoseEstimate> LiveReconstructor::flush() {
   std::vector<PoseEstimate> last;
-  while (!waiting_.empty()) last.push_back(solve_next());
+  while (num_waiting_ > 0) solve_next(last.emplace_back());
   reset();
   return last;
 }
@@ -39,35 +50,46 @@ void LiveReconstructor::reset() {
   targets_.clear();
   graph_.reset();
   turning_.reset();
-  waiting_.clear();
+  num_waiting_ = 0;
   num_recent_ = 0;
 }
 
-PoseEstimate LiveReconstructor::solve_next() {
-  const Eigen::Index at = num_recent_ - static_cast<Eigen::Index>(waiting_.size());
+void LiveReconstructor::solve_next(PoseEstimate& estimate) {
+  const Eigen::Index at = num_recent_ - static_cast<Eigen::Index>(num_waiting_);
   const retrieval::SignalWindow window{recent_, 0, num_recent_, at};
   solver_.search(window, neighbours_);
   graph_.extend(neighbours_);
-  RetrievedFrame retrieved = solver_.retrieve(graph_.paths(), window, waiting_.front());
+  solver_.retrieve(graph_.paths(), window, waiting_.front(), retrieved_);
   const double time_s = waiting_.front().time_s;
-  waiting_.pop_front();
+  std::rotate(waiting_.begin(), waiting_.begin() + 1, waiting_.end());
+  --num_waiting_;
   if (!targets_.empty())
-    retrieved.target.agreement =
-        evened_agreement(retrieved.target.agreement, targets_.back().agreement);
-  if (frames_.size() > BandedSystem::kReach) {
-    frames_.erase(frames_.begin());
-    targets_.erase(targets_.begin());
-  }
-  FittedFrame start = start_of(skeleton(), 1.0 / rate_hz(), retrieved.target,
-                               frames_.empty() ? nullptr : &frames_.back());
-  if (!frames_.empty()) start.rotations = frames_.back().rotations;
-  frames_.push_back(std::move(start));
-  targets_.push_back(std::move(retrieved.target));
+    retrieved_.target.agreement =
+        evened_agreement(retrieved_.target.agreement, targets_.back().agreement);
+  add_frame();
   fit_.fit(frames_, targets_, frames_.size() - 1, solver_.config().max_iterations);
-  PoseEstimate estimate = to_estimate(frames_.back(), time_s, targets_.back().feet.certainty,
-                                      std::move(retrieved.diagnostics));
-  estimate.extremities = retrieved.extremities;
-  return estimate;
+  put_estimate(frames_.back(), time_s, targets_.back().feet.certainty, estimate);
+  estimate.diagnostics.swap(retrieved_.diagnostics);
+  estimate.extremities = retrieved_.extremities;
+}
+
+// The retrieved frame after the others, its pose that of the last one; the oldest one makes place.
+void LiveReconstructor::add_frame() {
+  if (frames_.empty()) {
+    frames_.push_back(start_of(skeleton(), 1.0 / rate_hz(), retrieved_.target, nullptr));
+    targets_.push_back(retrieved_.target);
+    return;
+  }
+  if (frames_.size() > BandedSystem::kReach) {
+    std::rotate(frames_.begin(), frames_.begin() + 1, frames_.end());
+    std::rotate(targets_.begin(), targets_.begin() + 1, targets_.end());
+  } else {
+    frames_.emplace_back();
+    targets_.emplace_back();
+  }
+  frames_.back() = frames_[frames_.size() - 2];
+  move_root(1.0 / rate_hz(), retrieved_.target, frames_.back());
+  std::swap(targets_.back(), retrieved_.target);
 }
 
 }  // namespace sparse_mocap::path_regression

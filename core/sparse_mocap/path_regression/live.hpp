@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -24,11 +23,13 @@ class LiveReconstructor : public LiveMethod {
   double history_s() const override { return solver_.reach_back() / rate_hz(); }
 
   std::optional<PoseEstimate> step(const Reading& reading) override;
+  bool step_into(const Reading& reading, PoseEstimate& estimate) override;
   std::vector<PoseEstimate> flush() override;
   void reset() override;
 
  private:
-  PoseEstimate solve_next();
+  void solve_next(PoseEstimate& estimate);
+  void add_frame();
 
   FrameSolver solver_;
   TurningOf turning_;
@@ -39,8 +40,10 @@ class LiveReconstructor : public LiveMethod {
   retrieval::OnlineLazyNeighbourhoodGraph graph_;
   retrieval::FeatureRows recent_;  // signals of the last readings, oldest first
   Eigen::Index num_recent_ = 0;    // of them known
-  std::deque<Reading> waiting_;    // for their poses
+  std::vector<Reading> waiting_;   // for their poses: the first num_waiting_
+  std::size_t num_waiting_ = 0;
   std::vector<retrieval::Neighbour> neighbours_;
+  RetrievedFrame retrieved_;
 };
 
 }  // namespace sparse_mocap::path_regression

@@ -55,9 +55,10 @@ struct Turned {
   Mat3 R_shared_site;
 };
 
-std::vector<Turned> turned_sensors(std::span<const retrieval::Signal> signals,
-                                   const Eigen::Ref<const Eigen::RowVectorXf>& row) {
-  std::vector<Turned> found;
+void put_turned_sensors(std::span<const retrieval::Signal> signals,
+                        const Eigen::Ref<const Eigen::RowVectorXf>& row,
+                        std::vector<Turned>& found) {
+  found.clear();
   for (std::size_t s = 0; s < signals.size(); ++s) {
     if (signals[s].channel != Channel::orientation) continue;
     const Mat3 R = retrieval::rotation_of_axes(
@@ -68,7 +69,6 @@ std::vector<Turned> turned_sensors(std::span<const retrieval::Signal> signals,
   std::sort(found.begin(), found.end(), [](const Turned& a, const Turned& b) {
     return a.site->orientation < b.site->orientation;  // from the root outwards
   });
-  return found;
 }
 
 void place(const Skeleton& skeleton, const Site& site, const Mat3& R_heading_site,
@@ -122,33 +122,36 @@ std::vector<Sensor> with_turning(std::vector<Sensor> sensors) {
 TurningOf::TurningOf(std::vector<Sensor> sensors)
     : sensors_(with_usable_orientations(std::move(sensors))) {}
 
-Reading TurningOf::operator()(Reading reading) {
-  const Reading measured = reading;
+const Reading& TurningOf::operator()(const Reading& measured) {
+  told_ = measured;
   for (std::size_t s = 0; s < sensors_.size(); ++s) {
     const auto column = static_cast<Eigen::Index>(s);
-    const Eigen::Vector4d orientation = reading.orientation.col(column);
+    const Eigen::Vector4d orientation = measured.orientation.col(column);
     if (!sensors_[s].channels.has(Channel::orientation) || !orientation.allFinite()) continue;
     const Quat R_world_sensor = quaternion_of(orientation).normalized();
     if (!sensors_[s].channels.has(Channel::gravity_direction))
-      reading.gravity_direction.col(column) = R_world_sensor.conjugate() * kUp;
+      told_.gravity_direction.col(column) = R_world_sensor.conjugate() * kUp;
     if (sensors_[s].channels.has(Channel::angular_velocity) || before_.num_sensors() == 0) continue;
     const Eigen::Vector4d last = before_.orientation.col(column);
     if (!last.allFinite()) continue;
     const Eigen::AngleAxisd turn(quaternion_of(last).normalized().conjugate() * R_world_sensor);
-    reading.angular_velocity.col(column) =
-        turn.angle() * turn.axis() / (reading.time_s - before_.time_s);
+    told_.angular_velocity.col(column) =
+        turn.angle() * turn.axis() / (measured.time_s - before_.time_s);
   }
   before_ = measured;
-  return reading;
+  return told_;
 }
 
 void place_oriented_limbs(const Skeleton& skeleton, std::span<const retrieval::Signal> signals,
                           const Eigen::Ref<const Eigen::RowVectorXf>& row, double lever_m,
                           Eigen::VectorXd& points) {
-  const std::vector<Turned> sensors = turned_sensors(signals, row);
+  static thread_local std::vector<Turned> sensors;
+  static thread_local std::vector<Mat3> measured, retrieved;
+  put_turned_sensors(signals, row, sensors);
   if (sensors.empty()) return;
   PosePoints pose(skeleton, lever_m, points);
-  std::vector<Mat3> measured, retrieved;
+  measured.clear();
+  retrieved.clear();
   for (const Turned& sensor : sensors) {
     measured.push_back(sensor.R_shared_site);
     retrieved.push_back(pose.turn(sensor.site->orientation) * sensor.site->R_joint_sensor);

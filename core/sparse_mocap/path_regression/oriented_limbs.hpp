@@ -16,17 +16,18 @@ namespace sparse_mocap::path_regression {
 // limbs do not tell.
 std::vector<Sensor> with_turning(std::vector<Sensor> sensors);
 
-// Fills that in, reading by reading.
+// Fills that in, reading by reading, each in the memory of the one before.
 class TurningOf {
  public:
   // sensors: as they were before with_turning().
   explicit TurningOf(std::vector<Sensor> sensors);
 
-  Reading operator()(Reading reading);
+  const Reading& operator()(const Reading& measured);
   void reset() { before_ = {}; }
 
  private:
   std::vector<Sensor> sensors_;
+  Reading told_;
   Reading before_;  // as it was measured
 };
 

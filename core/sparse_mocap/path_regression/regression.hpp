@@ -12,5 +12,7 @@ namespace sparse_mocap::path_regression {
 // features: dimensions x I. Dimensions where the query is NaN take no part.
 Eigen::VectorXd regression_weights(const Eigen::MatrixXf& features, const Eigen::VectorXf& query,
                                    const Eigen::VectorXd& weights, double ridge);
+void put_regression_weights(const Eigen::MatrixXf& features, const Eigen::VectorXf& query,
+                            const Eigen::VectorXd& weights, double ridge, Eigen::VectorXd& out);
 
 }  // namespace sparse_mocap::path_regression

@@ -13,8 +13,8 @@ namespace {
 constexpr double kRelativeDecrease = 1e-7;  // below this share of the value, it has converged
 constexpr double kFirstDamping = 1e-4, kMostDamping = 1e6;
 
-std::vector<FittedFrame> stepped(const Skeleton& skeleton, std::vector<FittedFrame> frames,
-                                 std::size_t first_free, const Eigen::MatrixXd& steps) {
+void move(const Skeleton& skeleton, std::size_t first_free, const Eigen::MatrixXd& steps,
+          std::vector<FittedFrame>& frames) {
   const Eigen::Index angles = skeleton.num_angles();
   for (std::size_t t = first_free; t < frames.size(); ++t) {
     const auto step = steps.col(static_cast<Eigen::Index>(t - first_free));
@@ -23,7 +23,6 @@ std::vector<FittedFrame> stepped(const Skeleton& skeleton, std::vector<FittedFra
     frame.root_position += step.segment<3>(angles);
     frame.yaw_rad += step[angles + 3];
   }
-  return frames;
 }
 
 Mat3 nearest_rotation(const Mat3& matrix) {
@@ -51,31 +50,36 @@ JointRotations rotations_near(const Skeleton& skeleton, const Eigen::VectorXd& p
 
 }  // namespace
 
+TakeFit::TakeFit(const Skeleton& skeleton, double frame_time_s, const FitWeights& weights,
+                 int num_threads)
+    : skeleton_(skeleton),
+      weights_(weights),
+      equations_(std::make_unique<FitEquations>(skeleton, frame_time_s, weights_, num_threads)) {}
+TakeFit::~TakeFit() = default;
+
 double TakeFit::value(const std::vector<FittedFrame>& frames, std::span<const FrameTarget> targets,
-                      std::size_t first_free) const {
-  return FitEquations(skeleton_, frame_time_s_, weights_, frames, targets,
-                      static_cast<int>(first_free), false, num_threads_)
-      .value();
+                      std::size_t first_free) {
+  return equations_->value(frames, targets, static_cast<int>(first_free));
 }
 
 double TakeFit::fit(std::vector<FittedFrame>& frames, std::span<const FrameTarget> targets,
-                    std::size_t first_free, int max_iterations) const {
+                    std::size_t first_free, int max_iterations) {
   double damping = kFirstDamping;
   double reached = value(frames, targets, first_free);
   for (int iteration = 0; iteration < max_iterations && damping < kMostDamping; ++iteration) {
-    FitEquations equations(skeleton_, frame_time_s_, weights_, frames, targets,
-                           static_cast<int>(first_free), true, num_threads_);
-    equations.system().damp(damping);
-    Eigen::MatrixXd steps;
-    if (!equations.system().solve(steps)) break;
-    std::vector<FittedFrame> next = stepped(skeleton_, frames, first_free, steps);
-    const double value_there = value(next, targets, first_free);
+    equations_->form(frames, targets, static_cast<int>(first_free), true);
+    equations_->system().damp(damping);
+    if (!equations_->system().solve(steps_)) break;
+    next_ = frames;
+    move(skeleton_, first_free, steps_, next_);
+    const double value_there =
+        equations_->value(next_, targets, static_cast<int>(first_free), true);
     if (!(value_there < reached)) {
       damping *= 30.0;
       continue;
     }
     const bool is_converged = reached - value_there <= kRelativeDecrease * reached;
-    frames = std::move(next);
+    std::swap(frames, next_);
     reached = value_there;
     damping *= 0.1;
     if (is_converged) break;
@@ -87,22 +91,39 @@ FittedFrame start_of(const Skeleton& skeleton, double frame_time_s, const FrameT
                      const FittedFrame* before) {
   FittedFrame frame;
   frame.rotations = rotations_near(skeleton, target.points);
-  if (before != nullptr) {
-    const Vec3 velocity(target.root.velocity_mps.x(), 0.0, target.root.velocity_mps.y());
-    frame.root_position =
-        before->root_position + yaw_rotation(before->yaw_rad) * velocity * frame_time_s;
-    frame.yaw_rad = before->yaw_rad + target.root.yaw_rate_radps * frame_time_s;
+  if (before == nullptr) {
+    frame.root_position.y() = target.root.height_m;
+    return frame;
   }
-  frame.root_position.y() = target.root.height_m;
+  frame.root_position = before->root_position;
+  frame.yaw_rad = before->yaw_rad;
+  move_root(frame_time_s, target, frame);
   return frame;
+}
+
+void move_root(double frame_time_s, const FrameTarget& target, FittedFrame& frame) {
+  const Vec3 velocity(target.root.velocity_mps.x(), 0.0, target.root.velocity_mps.y());
+  frame.root_position += yaw_rotation(frame.yaw_rad) * velocity * frame_time_s;
+  frame.root_position.y() = target.root.height_m;
+  frame.yaw_rad += target.root.yaw_rate_radps * frame_time_s;
 }
 
 PoseEstimate to_estimate(const FittedFrame& frame, double time_s, const Eigen::Vector2d& contacts,
                          Diagnostics diagnostics) {
-  PoseEstimate estimate{time_s, {}, frame.root_position, contacts, std::move(diagnostics), {}};
+  PoseEstimate estimate;
+  put_estimate(frame, time_s, contacts, estimate);
+  estimate.diagnostics = std::move(diagnostics);
+  return estimate;
+}
+
+void put_estimate(const FittedFrame& frame, double time_s, const Eigen::Vector2d& contacts,
+                  PoseEstimate& estimate) {
+  estimate.time_s = time_s;
+  estimate.root_position = frame.root_position;
+  estimate.contacts = contacts;
+  estimate.rotations.clear();
   for (const Mat3& R : frame.rotations) estimate.rotations.emplace_back(R);
   estimate.rotations[0] = Quat(yaw_rotation(frame.yaw_rad)) * estimate.rotations[0];
-  return estimate;
 }
 
 }  // namespace sparse_mocap::path_regression

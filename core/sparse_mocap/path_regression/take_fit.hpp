@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -38,6 +40,8 @@ struct FitWeights {
   double hinge = 5.0;            // knees and elbows bend within their range
 };
 
+class FitEquations;
+
 // Fits the frames of a take, or its last ones, all at once: the pose of each frame to what was
 // retrieved and measured for it, and neighbouring frames to each other. Levenberg-Marquardt; each
 // step is the solution of one banded system.
@@ -46,34 +50,39 @@ class TakeFit {
   // The skeleton must outlive the fit. The result does not depend on the number of threads (0: one
   // a processor).
   TakeFit(const Skeleton& skeleton, double frame_time_s, const FitWeights& weights,
-          int num_threads = 1)
-      : skeleton_(skeleton),
-        frame_time_s_(frame_time_s),
-        weights_(weights),
-        num_threads_(num_threads) {}
+          int num_threads = 1);
+  TakeFit(const TakeFit&) = delete;
+  TakeFit& operator=(const TakeFit&) = delete;
+  ~TakeFit();
 
   // Fits frames [first_free, end) from where they are; those before stay. One target a frame.
   // Gives the value that is reached, never more than at the start.
   double fit(std::vector<FittedFrame>& frames, std::span<const FrameTarget> targets,
-             std::size_t first_free, int max_iterations) const;
+             std::size_t first_free, int max_iterations);
   // The sum of all terms that depend on frames [first_free, end).
   double value(const std::vector<FittedFrame>& frames, std::span<const FrameTarget> targets,
-               std::size_t first_free) const;
+               std::size_t first_free);
 
  private:
   const Skeleton& skeleton_;
-  double frame_time_s_;
   FitWeights weights_;
-  int num_threads_;
+  std::unique_ptr<FitEquations> equations_;
+  Eigen::MatrixXd steps_;
+  std::vector<FittedFrame> next_;
 };
 
 // Where a fit of a frame can start: a pose that has its points about where the target asks for
 // them, the root moved on from the frame before (null: at the origin, facing forward).
 FittedFrame start_of(const Skeleton& skeleton, double frame_time_s, const FrameTarget& target,
                      const FittedFrame* before);
+// Moves the root of a frame, which is where it was one frame before.
+void move_root(double frame_time_s, const FrameTarget& target, FittedFrame& frame);
 
 // The pose in the world.
 PoseEstimate to_estimate(const FittedFrame& frame, double time_s, const Eigen::Vector2d& contacts,
                          Diagnostics diagnostics);
+// The same, all but the diagnostics.
+void put_estimate(const FittedFrame& frame, double time_s, const Eigen::Vector2d& contacts,
+                  PoseEstimate& estimate);
 
 }  // namespace sparse_mocap::path_regression

@@ -89,7 +89,11 @@ std::vector<PoseEstimate> WholeTakeReconstructor::solve(const std::vector<Readin
   auto retrieved = in_parallel<RetrievedFrame>(
       take.size(),
       [&](std::size_t t) { progress.report(take.size() + t, 2 * take.size(), "reconstructing"); },
-      [&](std::size_t t) { return solver_.retrieve(paths.paths(t), window(t), take[t]); });
+      [&](std::size_t t) {
+        RetrievedFrame frame;
+        solver_.retrieve(paths.paths(t), window(t), take[t], frame);
+        return frame;
+      });
   return fitted(take, std::move(retrieved));
 }
 

@@ -58,6 +58,11 @@ class BoundedLive : public LiveMethod {
     if (estimate) limits_.apply(*estimate);
     return estimate;
   }
+  bool step_into(const Reading& reading, PoseEstimate& estimate) override {
+    if (!method_->step_into(reading, estimate)) return false;
+    limits_.apply(estimate);
+    return true;
+  }
   std::vector<PoseEstimate> flush() override {
     auto estimates = method_->flush();
     for (auto& estimate : estimates) limits_.apply(estimate);

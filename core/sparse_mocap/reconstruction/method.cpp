@@ -9,6 +9,12 @@
 
 namespace sparse_mocap {
 
+bool LiveMethod::step_into(const Reading& reading, PoseEstimate& estimate) {
+  auto next = step(reading);
+  if (next) estimate = std::move(*next);
+  return next.has_value();
+}
+
 void require_sensors(const Reading& reading, Eigen::Index num_sensors) {
   if (reading.num_sensors() != num_sensors)
     throw ConfigError("a reading of " + std::to_string(num_sensors) + " sensors is expected, got " +

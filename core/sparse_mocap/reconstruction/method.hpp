@@ -32,6 +32,9 @@ class LiveMethod : public Method {
   // Takes the next reading and gives the pose of latency_s() ago; nothing until there is one.
   // Throws ConfigError for readings of another number of sensors.
   virtual std::optional<PoseEstimate> step(const Reading& reading) = 0;
+  // The same in the memory of an earlier estimate of this method; false, and estimate is whatever,
+  // where there is no pose yet. Methods that retrieve need no further memory for a frame then.
+  virtual bool step_into(const Reading& reading, PoseEstimate& estimate);
   // The poses of the last latency_s(), when the performance ends; the next step() starts anew.
   virtual std::vector<PoseEstimate> flush() = 0;
   virtual void reset() = 0;

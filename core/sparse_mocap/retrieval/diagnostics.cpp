@@ -1,53 +1,69 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/retrieval/diagnostics.hpp"
 
-#include <cmath>
+#include <algorithm>
+#include <string>
+#include <string_view>
 
 namespace sparse_mocap::retrieval {
 namespace {
 
-Eigen::VectorXd spread_m(const MotionDatabase& database, const WeightedPaths& weighted) {
-  const auto count = static_cast<Eigen::Index>(weighted.paths.size());
-  Eigen::MatrixXd positions(database.positions().cols(), count);
-  for (Eigen::Index i = 0; i < count; ++i)
-    positions.col(i) = database.positions()
-                           .row(weighted.paths[static_cast<std::size_t>(i)].frame)
-                           .transpose()
-                           .cast<double>();
-  const Eigen::VectorXd mean = positions * weighted.weights;
-  Eigen::VectorXd spread(mean.size() / 3);
-  for (Eigen::Index j = 0; j < spread.size(); ++j) {
-    const auto joint = positions.middleRows(3 * j, 3);
-    const Eigen::RowVectorXd squared =
-        (joint.colwise() - mean.segment<3>(3 * j)).colwise().squaredNorm();
-    spread[j] = std::sqrt(squared.dot(weighted.weights));
+// The value of this name, in the memory that it has.
+Eigen::VectorXd& value_of(Diagnostics& diagnostics, std::string_view name) {
+  const auto at = diagnostics.find(name);
+  return at != diagnostics.end() ? at->second : diagnostics[std::string(name)];
+}
+
+void put_spread_m(const MotionDatabase& database, const WeightedPaths& weighted,
+                  Eigen::VectorXd& spread) {
+  static thread_local Eigen::VectorXd mean, positions;
+  mean.setZero(database.positions().cols());
+  const auto look_up = [&](std::size_t i) {
+    positions = database.positions().row(weighted.paths[i].frame).transpose().cast<double>();
+    return weighted.weights[static_cast<Eigen::Index>(i)];
+  };
+  for (std::size_t i = 0; i < weighted.paths.size(); ++i) {
+    const double weight = look_up(i);
+    mean += weight * positions;
   }
-  return spread;
+  spread.setZero(mean.size() / 3);
+  for (std::size_t i = 0; i < weighted.paths.size(); ++i) {
+    const double weight = look_up(i);
+    for (Eigen::Index j = 0; j < spread.size(); ++j)
+      spread[j] += weight * (positions.segment<3>(3 * j) - mean.segment<3>(3 * j)).squaredNorm();
+  }
+  spread = spread.cwiseSqrt();
 }
 
-Eigen::VectorXd specific_force_mps2(std::span<const Signal> signals,
-                                    const Eigen::RowVectorXf& measured) {
-  std::vector<double> values;
-  for (std::size_t s = 0; s < signals.size(); ++s)
-    if (signals[s].channel == Channel::specific_force)
-      for (Eigen::Index axis = 0; axis < 3; ++axis)
-        values.push_back(static_cast<double>(measured[static_cast<Eigen::Index>(3 * s) + axis]));
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
+bool is_force(const Signal& signal) { return signal.channel == Channel::specific_force; }
 
-Eigen::VectorXd sensor_misfit_mps2(const WeightedPaths& weighted, std::span<const Signal> signals,
-                                   const FeatureRows& signal_rows,
-                                   const Eigen::RowVectorXf& measured) {
-  Eigen::RowVectorXd retrieved = Eigen::RowVectorXd::Zero(signal_rows.cols());
+void put_sensor_misfit_mps2(const WeightedPaths& weighted, std::span<const Signal> signals,
+                            const FeatureRows& signal_rows,
+                            const Eigen::Ref<const Eigen::RowVectorXf>& measured,
+                            Eigen::VectorXd& norms) {
+  static thread_local Eigen::RowVectorXd misfit;
+  misfit = measured.cast<double>();
   for (std::size_t i = 0; i < weighted.paths.size(); ++i)
-    retrieved += weighted.weights[static_cast<Eigen::Index>(i)] *
-                 signal_rows.row(weighted.paths[i].frame).cast<double>();
-  const Eigen::RowVectorXd misfit = measured.cast<double>() - retrieved;
-  std::vector<double> norms;
+    misfit -= weighted.weights[static_cast<Eigen::Index>(i)] *
+              signal_rows.row(weighted.paths[i].frame).cast<double>();
+  norms.resize(std::count_if(signals.begin(), signals.end(), is_force));
+  Eigen::Index next = 0;
   for (std::size_t s = 0; s < signals.size(); ++s)
-    if (signals[s].channel == Channel::specific_force)
-      norms.push_back(misfit.segment<3>(static_cast<Eigen::Index>(3 * s)).norm());
-  return Eigen::Map<const Eigen::VectorXd>(norms.data(), static_cast<Eigen::Index>(norms.size()));
+    if (is_force(signals[s]))
+      norms[next++] = misfit.segment<3>(static_cast<Eigen::Index>(3 * s)).norm();
+}
+
+void put_specific_force_mps2(std::span<const Signal> signals,
+                             const Eigen::Ref<const Eigen::RowVectorXf>& measured,
+                             Eigen::VectorXd& values) {
+  values.resize(3 * std::count_if(signals.begin(), signals.end(), is_force));
+  Eigen::Index next = 0;
+  for (std::size_t s = 0; s < signals.size(); ++s)
+    if (is_force(signals[s])) {
+      values.segment<3>(next) =
+          measured.segment<3>(static_cast<Eigen::Index>(3 * s)).transpose().cast<double>();
+      next += 3;
+    }
 }
 
 }  // namespace
@@ -55,14 +71,22 @@ Eigen::VectorXd sensor_misfit_mps2(const WeightedPaths& weighted, std::span<cons
 Diagnostics retrieval_diagnostics(const MotionDatabase& database, const WeightedPaths& weighted,
                                   std::span<const Signal> signals, const FeatureRows& signal_rows,
                                   const Eigen::RowVectorXf& measured) {
-  const int frame = weighted.paths.front().frame;
   Diagnostics out;
-  out["sensor_misfit_mps2"] = sensor_misfit_mps2(weighted, signals, signal_rows, measured);
-  out["specific_force_mps2"] = specific_force_mps2(signals, measured);
-  out["spread_m"] = spread_m(database, weighted);
-  out["clip"] = Eigen::VectorXd::Constant(1, database.clip_index(frame));
-  out["database_frame"] = Eigen::VectorXd::Constant(1, frame);
+  put_retrieval_diagnostics(database, weighted, signals, signal_rows, measured, out);
   return out;
+}
+
+void put_retrieval_diagnostics(const MotionDatabase& database, const WeightedPaths& weighted,
+                               std::span<const Signal> signals, const FeatureRows& signal_rows,
+                               const Eigen::Ref<const Eigen::RowVectorXf>& measured,
+                               Diagnostics& out) {
+  const int frame = weighted.paths.front().frame;
+  put_sensor_misfit_mps2(weighted, signals, signal_rows, measured,
+                         value_of(out, "sensor_misfit_mps2"));
+  put_specific_force_mps2(signals, measured, value_of(out, "specific_force_mps2"));
+  put_spread_m(database, weighted, value_of(out, "spread_m"));
+  value_of(out, "clip").setConstant(1, database.clip_index(frame));
+  value_of(out, "database_frame").setConstant(1, frame);
 }
 
 }  // namespace sparse_mocap::retrieval

@@ -15,5 +15,9 @@ namespace sparse_mocap::retrieval {
 Diagnostics retrieval_diagnostics(const MotionDatabase& database, const WeightedPaths& weighted,
                                   std::span<const Signal> signals, const FeatureRows& signal_rows,
                                   const Eigen::RowVectorXf& measured);
+void put_retrieval_diagnostics(const MotionDatabase& database, const WeightedPaths& weighted,
+                               std::span<const Signal> signals, const FeatureRows& signal_rows,
+                               const Eigen::Ref<const Eigen::RowVectorXf>& measured,
+                               Diagnostics& out);
 
 }  // namespace sparse_mocap::retrieval

@@ -115,12 +115,11 @@ struct RowDistance {
 // Distances in the dimensions that a query has; the others are NaN.
 class KnownValues {
  public:
-  explicit KnownValues(std::span<const float> query) {
-    const Eigen::Map<const Eigen::ArrayXf> asked(query.data(),
-                                                 static_cast<Eigen::Index>(query.size()));
-    const Eigen::ArrayXf zero = Eigen::ArrayXf::Zero(asked.size());
-    is_known_ = asked.isNaN().select(zero, 1.0F);
-    values_ = asked.isNaN().select(zero, asked);
+  void ask(std::span<const float> query) {
+    values_ =
+        Eigen::Map<const Eigen::ArrayXf>(query.data(), static_cast<Eigen::Index>(query.size()));
+    is_known_ = values_.isNaN().select(Eigen::ArrayXf::Zero(values_.size()), 1.0F);
+    values_ = values_.isNaN().select(Eigen::ArrayXf::Zero(values_.size()), values_);
   }
   float squared_distance(const float* row) const {
     const Eigen::Map<const Eigen::ArrayXf> there(row, values_.size());
@@ -181,7 +180,8 @@ struct KnnIndex::Searched {
     static thread_local std::vector<Candidate> buffer;
     NearestSet nearest(k, buffer);
     if (std::any_of(query.begin(), query.end(), [](float v) { return std::isnan(v); })) {
-      const KnownValues known(query);
+      static thread_local KnownValues known;
+      known.ask(query);
       for (std::uint32_t i = 0; i < rows.size(); ++i)
         nearest.addPoint(known.squared_distance(row(i)), i);
     } else {
@@ -196,7 +196,8 @@ struct KnnIndex::Searched {
     blocks->near_rows(query, k, places);
     const bool all_known =
         std::none_of(query.begin(), query.end(), [](float v) { return std::isnan(v); });
-    const KnownValues known(query);
+    static thread_local KnownValues known;
+    known.ask(query);
     for (std::size_t i = 0; i < places.size(); ++i) {
       constexpr std::size_t kAhead = 16;  // rows that are fetched into the cache meanwhile
       if (i + kAhead < places.size()) __builtin_prefetch(row(places[i + kAhead]));

@@ -8,45 +8,65 @@
 namespace sparse_mocap::retrieval {
 namespace {
 
-Eigen::VectorXd rewards_of(std::span<const Path> paths) {
-  Eigen::VectorXd rewards(static_cast<Eigen::Index>(paths.size()));
+void put_rewards(std::span<const Path> paths, Eigen::VectorXd& rewards) {
+  rewards.resize(static_cast<Eigen::Index>(paths.size()));
   for (Eigen::Index i = 0; i < rewards.size(); ++i)
     rewards[i] = paths[static_cast<std::size_t>(i)].reward;
-  return rewards;
 }
 
-Eigen::VectorXd normalised(const Eigen::VectorXd& weights) {
+void normalise(Eigen::VectorXd& weights) {
   const double total = weights.sum();
   if (total <= 0.0)
-    return Eigen::VectorXd::Constant(weights.size(), 1.0 / static_cast<double>(weights.size()));
-  return weights / total;
+    weights.setConstant(1.0 / static_cast<double>(weights.size()));
+  else
+    weights /= total;
 }
 
 }  // namespace
 
 std::vector<Path> best_paths(std::span<const Path> paths, int num_paths) {
-  std::vector<Path> best(paths.begin(), paths.end());
+  std::vector<Path> best;
+  put_best_paths(paths, num_paths, best);
+  return best;
+}
+
+void put_best_paths(std::span<const Path> paths, int num_paths, std::vector<Path>& best) {
+  best.assign(paths.begin(), paths.end());
   const auto count = std::min(best.size(), static_cast<std::size_t>(num_paths));
   const auto last = best.begin() + static_cast<std::ptrdiff_t>(count);
   const auto is_better = [](const Path& a, const Path& b) {
     return a.reward != b.reward ? a.reward > b.reward : a.frame < b.frame;
   };
-  std::partial_sort(best.begin(), last, best.end(), is_better);
+  std::nth_element(best.begin(), last, best.end(), is_better);
+  std::sort(best.begin(), last, is_better);
   best.erase(last, best.end());
-  return best;
 }
 
 Eigen::VectorXd linear_weights(std::span<const Path> paths) {
-  const Eigen::VectorXd rewards = rewards_of(paths);
-  return normalised(rewards.array() - rewards.minCoeff());
+  Eigen::VectorXd weights;
+  put_linear_weights(paths, weights);
+  return weights;
+}
+
+void put_linear_weights(std::span<const Path> paths, Eigen::VectorXd& weights) {
+  put_rewards(paths, weights);
+  weights.array() -= weights.minCoeff();
+  normalise(weights);
 }
 
 Eigen::VectorXd softmax_weights(std::span<const Path> paths, double sharpness) {
-  const Eigen::VectorXd rewards = rewards_of(paths);
-  const double mean = rewards.mean();
-  const double deviation = std::sqrt((rewards.array() - mean).square().mean());
+  Eigen::VectorXd weights;
+  put_softmax_weights(paths, sharpness, weights);
+  return weights;
+}
+
+void put_softmax_weights(std::span<const Path> paths, double sharpness, Eigen::VectorXd& weights) {
+  put_rewards(paths, weights);
+  const double mean = weights.mean(), best = weights.maxCoeff();
+  const double deviation = std::sqrt((weights.array() - mean).square().mean());
   const double scale = deviation > 0.0 ? sharpness / deviation : 0.0;
-  return normalised((scale * (rewards.array() - rewards.maxCoeff())).exp());
+  weights = (scale * (weights.array() - best)).exp();
+  normalise(weights);
 }
 
 Neighbourhood gather(const MotionDatabase& database, std::vector<Path> paths,

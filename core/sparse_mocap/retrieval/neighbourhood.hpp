@@ -24,13 +24,16 @@ struct Neighbourhood : WeightedPaths {
 
 // The num_paths paths of greatest reward, ties by frame.
 std::vector<Path> best_paths(std::span<const Path> paths, int num_paths);
+void put_best_paths(std::span<const Path> paths, int num_paths, std::vector<Path>& best);
 
 // Equation (1) with cost = const - reward, for paths sorted by falling reward: the worst path
 // counts nothing, equal rewards count alike.
 Eigen::VectorXd linear_weights(std::span<const Path> paths);
+void put_linear_weights(std::span<const Path> paths, Eigen::VectorXd& weights);
 
 // exp(sharpness * (reward - best) / standard deviation of the rewards), normalised.
 Eigen::VectorXd softmax_weights(std::span<const Path> paths, double sharpness);
+void put_softmax_weights(std::span<const Path> paths, double sharpness, Eigen::VectorXd& weights);
 
 // Looks the paths up in the database. near_angles, when given, is a pose near which the best path's
 // angles are put.

@@ -83,7 +83,7 @@ OnlineLazyNeighbourhoodGraph::Column OnlineLazyNeighbourhoodGraph::reused_column
   const auto kept = static_cast<std::size_t>(std::max(config_.window + 1, 2));
   if (columns_.size() > kept) {
     column = std::move(columns_.front());
-    columns_.pop_front();
+    columns_.erase(columns_.begin());
   }
   column.nodes.clear();
   column.by_frame.clear();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <span>
 #include <vector>
 
@@ -82,7 +81,7 @@ class OnlineLazyNeighbourhoodGraph {
   std::vector<std::int32_t> clip_of_frame_;
   OlngConfig config_;
   std::vector<Step> steps_;
-  std::deque<Column> columns_;  // newest last
+  std::vector<Column> columns_;  // newest last
   std::vector<Path> paths_;
   std::vector<std::uint64_t> scratch_;
 };

@@ -34,7 +34,9 @@ double common_yaw_rad(std::span<const Mat3> measured, std::span<const Mat3> mode
 }
 
 void share_heading(std::span<const int> sites, Eigen::Ref<Eigen::RowVectorXf> axes) {
-  std::vector<Mat3> turned, resting;
+  static thread_local std::vector<Mat3> turned, resting;
+  turned.clear();
+  resting.clear();
   for (std::size_t s = 0; s < sites.size(); ++s) {
     turned.push_back(
         rotation_of_axes(axes.segment<kAxesColumns>(static_cast<Eigen::Index>(s) * kAxesColumns)));
@@ -57,6 +59,12 @@ Mat3 rotation_of_axes(const Eigen::Ref<const Eigen::RowVectorXf>& axes) {
 Eigen::RowVectorXf axes_row(const Reading& reading, std::span<const Eigen::Index> sensors,
                             std::span<const int> sites) {
   Eigen::RowVectorXf row(kAxesColumns * static_cast<Eigen::Index>(sensors.size()));
+  put_axes_row(reading, sensors, sites, row);
+  return row;
+}
+
+void put_axes_row(const Reading& reading, std::span<const Eigen::Index> sensors,
+                  std::span<const int> sites, Eigen::Ref<Eigen::RowVectorXf> row) {
   row.setConstant(std::numeric_limits<float>::quiet_NaN());
   for (std::size_t s = 0; s < sensors.size(); ++s) {
     const Eigen::Vector4d orientation = reading.orientation.col(sensors[s]);
@@ -65,7 +73,6 @@ Eigen::RowVectorXf axes_row(const Reading& reading, std::span<const Eigen::Index
                row.segment<kAxesColumns>(static_cast<Eigen::Index>(s) * kAxesColumns));
   }
   share_heading(sites, row);
-  return row;
 }
 
 FeatureRows database_axes(const MotionDatabase& database, std::span<const int> sites) {

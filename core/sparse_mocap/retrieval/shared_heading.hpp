@@ -31,6 +31,8 @@ double common_yaw_rad(std::span<const Mat3> measured, std::span<const Mat3> mode
 // The axes of a reading's sensors (columns of the reading).
 Eigen::RowVectorXf axes_row(const Reading& reading, std::span<const Eigen::Index> sensors,
                             std::span<const int> sites);
+void put_axes_row(const Reading& reading, std::span<const Eigen::Index> sensors,
+                  std::span<const int> sites, Eigen::Ref<Eigen::RowVectorXf> row);
 
 // Those that the sensors would have in each frame of the database.
 FeatureRows database_axes(const MotionDatabase& database, std::span<const int> sites);

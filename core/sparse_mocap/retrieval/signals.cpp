@@ -35,7 +35,9 @@ struct Turned {
   std::vector<Eigen::Index> sensors;
   std::vector<int> sites;
 
-  explicit Turned(std::span<const Signal> signals) {
+  void find(std::span<const Signal> signals) {
+    sensors.clear();
+    sites.clear();
     for (const Signal& signal : signals)
       if (signal.channel == Channel::orientation &&
           (sensors.empty() || sensors.back() != signal.sensor)) {
@@ -81,7 +83,8 @@ bool is_on_leg(const Signal& signal) {
 
 FeatureRows database_signals(const MotionDatabase& database, std::span<const Signal> signals) {
   FeatureRows rows(database.num_frames(), static_cast<Eigen::Index>(3 * signals.size()));
-  const Turned turned(signals);
+  Turned turned;
+  turned.find(signals);
   if (!turned.sites.empty())
     rows.rightCols(turned.num_columns()) = database_axes(database, turned.sites);
   for (std::size_t s = 0; s < signals.size(); ++s) {
@@ -106,9 +109,16 @@ FeatureRows database_signals(const MotionDatabase& database, std::span<const Sig
 
 Eigen::RowVectorXf signal_row(const Reading& reading, std::span<const Signal> signals) {
   Eigen::RowVectorXf row(static_cast<Eigen::Index>(3 * signals.size()));
-  const Turned turned(signals);
+  put_signals(reading, signals, row);
+  return row;
+}
+
+void put_signals(const Reading& reading, std::span<const Signal> signals,
+                 Eigen::Ref<Eigen::RowVectorXf> row) {
+  static thread_local Turned turned;
+  turned.find(signals);
   if (!turned.sites.empty())
-    row.tail(turned.num_columns()) = axes_row(reading, turned.sensors, turned.sites);
+    put_axes_row(reading, turned.sensors, turned.sites, row.tail(turned.num_columns()));
   for (std::size_t s = 0; s < signals.size(); ++s) {
     if (signals[s].channel == Channel::orientation) continue;
     const auto& channel = signals[s].channel == Channel::gravity_direction
@@ -117,7 +127,6 @@ Eigen::RowVectorXf signal_row(const Reading& reading, std::span<const Signal> si
     row.segment<3>(static_cast<Eigen::Index>(3 * s)) =
         channel.col(signals[s].sensor).transpose().cast<float>();
   }
-  return row;
 }
 
 std::vector<bool> searched_frames(const MotionDatabase& database, bool use_tempo_copies,

@@ -35,6 +35,8 @@ FeatureRows database_signals(const MotionDatabase& database, std::span<const Sig
 
 // The same of a reading: a row of 3 signals.
 Eigen::RowVectorXf signal_row(const Reading& reading, std::span<const Signal> signals);
+void put_signals(const Reading& reading, std::span<const Signal> signals,
+                 Eigen::Ref<Eigen::RowVectorXf> row);
 
 // Which frames are searched: not those of excluded clips, nor, unless wanted, copies at another
 // tempo. Throws ConfigError for an excluded clip that does not exist, and when no frame is left.
