@@ -129,11 +129,12 @@ make_root() {
   as_root mv "$root" "$made"
 }
 
-# in_root COMMAND...: in the folder $root, as root, with this machine's files where they are.
+# in_root COMMAND...: in the folder $root, as root, with this machine's files where they are: those of
+# the user, of the project, and the recorded motion that the tests read.
 in_root() {
   as_root unshare --mount --propagation private sh -c 'set -e
     mount -t proc proc "$0/proc"
-    for folder in /dev /tmp "$1" "$2"; do
+    for folder in /dev /tmp "$1" "$2" ${SPARSE_MOCAP_DATA:+"$SPARSE_MOCAP_DATA"}; do
       mkdir -p "$0$folder"
       mount --rbind "$folder" "$0$folder"
     done
