@@ -42,7 +42,9 @@ def main() -> int:
     report = json.loads(options.report.read_text("utf-8"))
     logs = dict(log.rsplit("=", 1) for log in options.logs)
     try:
-        note_tests(report, {suite: Path(log).read_text("utf-8") for suite, log in logs.items()})
+        note_tests(
+            report, {suite: Path(log).read_text("utf-8", "replace") for suite, log in logs.items()}
+        )
     except PackagingError as error:
         print(error, file=sys.stderr)
         return 1
