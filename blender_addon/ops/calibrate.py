@@ -18,6 +18,16 @@ from .job_operator import JobOperator
 from .live import connected
 
 
+def use_calibration(operator: Operator, context: Context, result: Calibrated) -> None:
+    """Reports what a calibration found and uses it from now on, in a running live preview too."""
+    settings_of(context.scene).calibration = result.path
+    for note in result.notes:
+        operator.report({"WARNING"}, tr_line(note))
+    session = live.current()
+    if session is not None:
+        session.use_calibration(calibrations.get(result.path))
+
+
 class SPARSEMOCAP_OT_calibrate_sensors(JobOperator, Operator):
     """Find how each sensor is oriented and scaled, from a few guided movements."""
 
@@ -45,12 +55,7 @@ class SPARSEMOCAP_OT_calibrate_sensors(JobOperator, Operator):
     def apply(self, context: Context, result: Calibrated) -> Steps[str]:
         """Use the calibration from now on, in a running live preview too."""
         yield 0.0
-        settings_of(context.scene).calibration = result.path
-        for note in result.notes:
-            self.report({"WARNING"}, tr_line(note))
-        session = live.current()
-        if session is not None:
-            session.use_calibration(calibrations.get(result.path))
+        use_calibration(self, context, result)
         return f"Calibrated {len(result.calibration.sensors)} sensors, saved as {result.path}"
 
     def _end(self, context: Context) -> None:

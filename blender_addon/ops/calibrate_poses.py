@@ -8,12 +8,12 @@ from bpy.types import Context, Event, Operator
 
 from ..scene import pose_guide as guide
 from ..scene.settings import settings_of
-from ..session import live
-from ..session.calibrating import Calibrated, calibrations
+from ..session.calibrating import Calibrated
 from ..session.job import Job
 from ..session.new_files import takes_folder
 from ..session.pose_guide import pose_guide_job
 from ..session.steps import Steps
+from .calibrate import use_calibration
 from .job_operator import JobOperator
 from .live import connected
 
@@ -44,12 +44,7 @@ class SPARSEMOCAP_OT_calibrate_by_poses(JobOperator, Operator):
     def apply(self, context: Context, result: Calibrated) -> Steps[str]:
         """Use the calibration from now on, in a running live preview too."""
         yield 0.0
-        settings_of(context.scene).calibration = result.path
-        for note in result.notes:
-            self.report({"WARNING"}, note)
-        session = live.current()
-        if session is not None:
-            session.use_calibration(calibrations.get(result.path))
+        use_calibration(self, context, result)
         return f"Calibrated {len(result.calibration.sensors)} trackers, saved as {result.path}"
 
     def _end(self, context: Context) -> None:
