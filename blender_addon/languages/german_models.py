@@ -2,7 +2,7 @@
 """What Blender shows of trained models and of one phone."""
 
 MODELS = {
-    "Learn a model from the chosen clips of the motion database, and use it": (
+    "Train a model on the chosen clips of the motion database, and use it": (
         "Aus den gewählten Clips der Bewegungsdatenbank ein Modell lernen und es verwenden"
     ),
     "The .smmodel file to write": "Die .smmodel-Datei, die geschrieben wird",
@@ -10,7 +10,7 @@ MODELS = {
     "The trained model (.smmodel) to reconstruct with": (
         "Das trainierte Modell (.smmodel), mit dem rekonstruiert wird"
     ),
-    "Learn from the clip that is selected in the list of clips": (
+    "Add the clip that is selected in the list of clips": (
         "Von dem Clip lernen, der in der Liste der Clips gewählt ist"
     ),
     "Write to a file where the phases of the chosen clips begin. Change the times in a text "

@@ -167,7 +167,7 @@ REPORTS = {
     "A recording is running: stop it before you calibrate": (
         "Eine Aufnahme läuft: sie vor dem Kalibrieren beenden"
     ),
-    "No tracker sent data in all poses: look after them and calibrate again": (
+    "No tracker sent data in all poses: check the trackers and calibrate again": (
         "Kein Tracker sendete in allen Posen: nach ihnen sehen und neu kalibrieren"
     ),
     "Choose the port of the sensors first": "Zuerst den Port der Sensoren wählen",
@@ -212,7 +212,10 @@ REPORTS = {
     ),
     # Models and the phone
     "Select a clip in the list of clips first": "Zuerst einen Clip in der Liste auswählen",
-    "It is a model of {method}, not of {wanted}": "Das ist ein Modell von {method}, nicht {wanted}",
+    "This model is for {method}, not for {wanted}: open another one, or change the method": (
+        "Dieses Modell ist für {method}, nicht für {wanted}: ein anderes öffnen oder die Methode "
+        "wechseln"
+    ),
     "The recording has {count} sensors, and one phone is expected: convert it with "
     "`sparse-mocap import`": (
         "Die Aufnahme hat {count} Sensoren, erwartet wird ein Telefon: mit `sparse-mocap import` "

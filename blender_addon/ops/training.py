@@ -57,7 +57,7 @@ class SPARSEMOCAP_OT_train_model(JobOperator, Operator):
 
     bl_idname = "sparse_mocap.train_model"
     bl_label = "Train"
-    bl_description = "Learn a model from the chosen clips of the motion database, and use it"
+    bl_description = "Train a model on the chosen clips of the motion database, and use it"
     bl_options = {"REGISTER", "UNDO"}
 
     filepath: StringProperty(
@@ -101,7 +101,10 @@ class SPARSEMOCAP_OT_open_model(Operator):
         try:
             model = models.get(bpy.path.abspath(self.filepath))
             if model.method != settings.method:
-                raise InputError(f"It is a model of {model.method}, not of {settings.method}")
+                raise InputError(
+                    f"This model is for {model.method}, not for {settings.method}: open another "
+                    "one, or change the method"
+                )
         except Exception as error:
             self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
@@ -110,11 +113,11 @@ class SPARSEMOCAP_OT_open_model(Operator):
 
 
 class SPARSEMOCAP_OT_add_training_clip(NowOperator, Operator):
-    """Learn from the clip that is selected in the list of clips."""
+    """Train also on the clip that is selected in the list of clips."""
 
     bl_idname = "sparse_mocap.add_training_clip"
     bl_label = "Add Selected Clip"
-    bl_description = "Learn from the clip that is selected in the list of clips"
+    bl_description = "Add the clip that is selected in the list of clips"
     bl_options = {"REGISTER", "UNDO"}
 
     def act(self, context: Context) -> str:

@@ -152,7 +152,9 @@ def _joined(takes: list[Any]) -> Any:
     """Recordings of the same sensors as one take, on the clock of the first."""
     names = [name for name in takes[0].take.sensors if all(name in t.take.sensors for t in takes)]
     if not names:
-        raise InputError("No tracker sent data in all poses: look after them and calibrate again")
+        raise InputError(
+            "No tracker sent data in all poses: check the trackers and calibrate again"
+        )
     sensors = {}
     for name in names:
         parts = [recorded.take.sensors[name] for recorded in takes]

@@ -84,7 +84,7 @@ def _simulation_options(command: Callable[..., Any]) -> Callable[..., Any]:
 )
 @click.option(
     "--train", "training", metavar="GLOB",
-    help="Files for the database and the models, instead of the scenario's. Needs --tests.",
+    help="Files to make the database and models from, not the scenario's. Needs --tests.",
 )  # fmt: skip
 @click.option("--json", "json_path", type=OutputPath(), help="Write all results as JSON.")
 @click.option("--plots", type=FilePath, help="Write plots of the errors to this folder.")

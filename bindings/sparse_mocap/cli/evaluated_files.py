@@ -29,7 +29,7 @@ def chosen_pairs(training: str | None, tests: str | None) -> tuple[tuple[str, st
     if training is None:
         return ()
     if tests is None:
-        raise click.UsageError("--train needs --tests: say which files to test.")
+        raise click.UsageError("--train needs --tests: name the files to test.")
     return ((training, tests),)
 
 

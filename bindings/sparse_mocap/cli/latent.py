@@ -22,7 +22,10 @@ __all__ = ["latent"]
     "-o", "--output", type=OutputPath(), required=True, help="The picture to write (.png)."
 )
 @click.option(
-    "--take", metavar="TAKE.csv", type=FilePath, help="Also draw the way of a take through it."
+    "--take",
+    metavar="TAKE.csv",
+    type=FilePath,
+    help="Also draw the path of a take through the latent space.",
 )
 def latent(model_path: Path, output: Path, take: Path | None) -> None:
     """Draws the latent space of a model: a point for each frame that it was trained on.

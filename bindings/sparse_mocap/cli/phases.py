@@ -21,9 +21,7 @@ __all__ = ["phases"]
 
 @click.command()
 @clip_options
-@click.option(
-    "--method", default="eom2014", show_default=True, help="The method that is to be trained."
-)
+@click.option("--method", default="eom2014", show_default=True, help="The method to train.")
 @set_option
 @click.option(
     "-o", "--output", type=OutputPath(), metavar="FILE.csv",

@@ -34,7 +34,7 @@ __all__ = ["train"]
 )  # fmt: skip
 @click.option(
     "--phases", "phases_path", metavar="FILE.csv", type=FilePath,
-    help="The phases of clips, as `phases` writes them and you changed them.",
+    help="The phases of clips: write the file with `phases`, then change the times in it.",
 )  # fmt: skip
 def train(
     chosen: Mapping[str, Any],

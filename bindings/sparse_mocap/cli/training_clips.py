@@ -52,7 +52,7 @@ def clip_options(command: Callable[..., Any]) -> Callable[..., Any]:
     for option in (
         click.option(
             "--type", "types", type=Setting(), multiple=True, metavar="NAME=GLOB",
-            help="Clips with such file names are a type of motion of their own, as in run=35_1*."
+            help="Clips whose file names match are one type of motion, for example run=35_1*."
             " Can be repeated; takes are then recognised as one of the types.",
         ),
         click.option(
@@ -66,7 +66,7 @@ def clip_options(command: Callable[..., Any]) -> Callable[..., Any]:
         ),
         click.option(
             "--database", "database_path", metavar="DB.smdb", type=FilePath,
-            help="Take the clips from a motion database.",
+            help="Use clips of a motion database in place of files.",
         ),
         click.argument("clips", metavar="CLIP...", nargs=-1, type=FilePath),
     ):  # fmt: skip
@@ -86,9 +86,11 @@ def training_clips(
     """
     files, database = chosen["files"], chosen["database"]
     if bool(files) == (database is not None):
-        raise click.UsageError("Give either motion files or --database.")
+        raise click.UsageError("Give motion files or --database DB.smdb, one of the two.")
     if database is None and (chosen["classes"] or chosen["names"]):
-        raise click.UsageError("--class and --clips choose from a motion database: --database.")
+        raise click.UsageError(
+            "--class and --clips need a motion database: add --database DB.smdb."
+        )
     if database is not None:
         position = float(options.get("position_along_bone", 1.0))
         found = database_clips(
