@@ -156,7 +156,7 @@ LABELS = {
     "Foot lock": "Fußhalt",
     "Floor": "Boden",
     "Certainty": "Sicherheit",
-    "Fastest (m/s)": "Am schnellsten (m/s)",
+    "Speed (m/s)": "Tempo (m/s)",
     "Highest (m)": "Am höchsten (m)",
     "Keys": "Keyframes",
     "Whole frames": "Ganze Bilder",

@@ -301,6 +301,38 @@ REPORTS = {
     "Loaded a take of {count} sensors, {seconds} s": (
         "Aufnahme mit {count} Sensoren geladen, {seconds} s"
     ),
+    "Built a database of {clips} clips from {files} files": (
+        "Datenbank aus {clips} Clips von {files} Dateien erstellt"
+    ),
+    "Built a database of {clips} clips from {files} files, {skipped} skipped": (
+        "Datenbank aus {clips} Clips von {files} Dateien erstellt, {skipped} übersprungen"
+    ),
+    "Built a database of {clips} clips from {actions} actions": (
+        "Datenbank aus {clips} Clips von {actions} Actions erstellt"
+    ),
+    "Built a database of {clips} clips from {actions} actions, {skipped} skipped": (
+        "Datenbank aus {clips} Clips von {actions} Actions erstellt, {skipped} übersprungen"
+    ),
+    "Imported {files} files, each on its own armature": (
+        "{files} Dateien importiert, jede auf einer eigenen Armatur"
+    ),
+    "Imported {files} files, each on its own armature, {skipped} left out": (
+        "{files} Dateien importiert, jede auf einer eigenen Armatur, {skipped} ausgelassen"
+    ),
+    'Imported "{name}": {joints} joints, {frames} frames': (
+        "„{name}“ importiert: {joints} Gelenke, {frames} Bilder"
+    ),
+    'Imported "{name}": {joints} joints, rest pose': (
+        "„{name}“ importiert: {joints} Gelenke, Ruhepose"
+    ),
+    "and {count} more warnings": "und {count} weitere Warnungen",
+    "Trained a model on {clips} clips": "Modell aus {clips} Clips gelernt",
+    "Trained a model on {clips} clips of {types} types of motion": (
+        "Modell aus {clips} Clips von {types} Bewegungsarten gelernt"
+    ),
+    "The motion has positions or rotations that are not finite numbers": (
+        "Die Bewegung hat Positionen oder Drehungen, die keine endlichen Zahlen sind"
+    ),
     "{count} more takes in {folder}": "{count} weitere Aufnahmen in {folder}",
     '"{name}" is not listed any more': "„{name}“ steht nicht mehr in der Liste",
     '"{body}" moves with "{name}"': "„{body}“ bewegt sich mit „{name}“",

@@ -22,16 +22,17 @@ from ..session.database import (
     default_output,
     last_build,
 )
-from ..session.errors import InputError, one_line
+from ..session.errors import InputError
 from ..session.job import Job
 from ..session.steps import Steps, part
 from .job_operator import JobOperator
+from .now_operator import FileOperator
 
 SKIP = {"SKIP_SAVE"}
 REPORT = "Motion Database Report"
 
 
-class SPARSEMOCAP_OT_open_database(Operator):
+class SPARSEMOCAP_OT_open_database(FileOperator, Operator):
     """Open a motion database (.smdb)."""
 
     bl_idname = "sparse_mocap.open_database"
@@ -39,26 +40,16 @@ class SPARSEMOCAP_OT_open_database(Operator):
     bl_description = "Open a motion database (.smdb)"
     bl_options = {"REGISTER", "UNDO"}
 
-    filepath: StringProperty(name="File", subtype="FILE_PATH", options=SKIP)
     filter_glob: StringProperty(default=f"*{SUFFIX}", options={"HIDDEN", "SKIP_SAVE"})
 
-    def invoke(self, context: Context, event: Event) -> set[str]:
-        """Open the file browser."""
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
-
-    def execute(self, context: Context) -> set[str]:
+    def act(self, context: Context) -> str:
         """Open the file; remember its path if it is a database."""
-        try:
-            databases.get(bpy.path.abspath(self.filepath))
-        except Exception as error:
-            self.report({"ERROR"}, tr_line(one_line(error)))
-            return {"CANCELLED"}
+        databases.get(bpy.path.abspath(self.filepath))
         settings_of(context.scene).database = self.filepath
-        return {"FINISHED"}
+        return ""
 
 
-class SPARSEMOCAP_OT_choose_output(Operator):
+class SPARSEMOCAP_OT_choose_output(FileOperator, Operator):
     """Choose where to save the new motion database."""
 
     bl_idname = "sparse_mocap.choose_output"
@@ -66,7 +57,6 @@ class SPARSEMOCAP_OT_choose_output(Operator):
     bl_description = "Choose where to save the new motion database"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
-    filepath: StringProperty(name="File", subtype="FILE_PATH", options=SKIP)
     filter_glob: StringProperty(default=f"*{SUFFIX}", options={"HIDDEN", "SKIP_SAVE"})
     check_existing: BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
 
@@ -74,18 +64,12 @@ class SPARSEMOCAP_OT_choose_output(Operator):
         """Open the file browser."""
         settings = settings_of(context.scene)
         self.filepath = settings.output or default_output(bpy.path.abspath(settings.source))
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
+        return super().invoke(context, event)
 
-    def execute(self, context: Context) -> set[str]:
+    def act(self, context: Context) -> str:
         """Remember the path if a file can be written there."""
-        try:
-            path = checked_output(bpy.path.abspath(self.filepath))
-        except Exception as error:
-            self.report({"ERROR"}, tr_line(one_line(error)))
-            return {"CANCELLED"}
-        settings_of(context.scene).output = path
-        return {"FINISHED"}
+        settings_of(context.scene).output = checked_output(bpy.path.abspath(self.filepath))
+        return ""
 
 
 class SPARSEMOCAP_OT_build_database(JobOperator, Operator):
@@ -139,10 +123,10 @@ class SPARSEMOCAP_OT_build_database(JobOperator, Operator):
         """Use the new database."""
         yield 0.0
         settings_of(context.scene).database = result.path
-        skipped = f", {len(result.skipped)} files skipped" if result.skipped else ""
-        return (
-            f"Built a database of {result.num_clips} clips from {result.num_files} files{skipped}"
-        )
+        clips, files, skipped = result.num_clips, result.num_files, len(result.skipped)
+        if skipped:
+            return f"Built a database of {clips} clips from {files} files, {skipped} skipped"
+        return f"Built a database of {clips} clips from {files} files"
 
 
 class SPARSEMOCAP_OT_build_from_file(JobOperator, Operator):
@@ -203,9 +187,10 @@ class SPARSEMOCAP_OT_build_from_file(JobOperator, Operator):
         ]
         summary = yield from part(build_from_motions_steps(motions, path, choices), 0.7, 0.3)
         settings_of(context.scene).database = summary.path
-        skipped = f", {len(summary.skipped)} skipped" if summary.skipped else ""
-        clips = f"{summary.num_clips} clips from {summary.num_files} actions"
-        return f"Built a database of {clips}{skipped}"
+        clips, actions, skipped = summary.num_clips, summary.num_files, len(summary.skipped)
+        if skipped:
+            return f"Built a database of {clips} clips from {actions} actions, {skipped} skipped"
+        return f"Built a database of {clips} clips from {actions} actions"
 
 
 class SPARSEMOCAP_OT_add_sources(Operator):

@@ -122,12 +122,15 @@ class ImportOperator(JobOperator):
         if more > 0:
             self.report({"WARNING"}, tr_line(f"and {more} more warnings"))
         if len(made) > 1:
-            left_out = f", {len(result.problems)} left out" if result.problems else ""
-            return f"Imported {len(made)} files, each on its own armature{left_out}"
-        motion = result.motions[0]
-        joints = f"{len(motion.skeleton.parents)} joints"
-        frames = f"{motion.num_frames} frames" if motion.num_frames else "rest pose"
-        return f'Imported "{made[0].name}": {joints}, {frames}'
+            files, left_out = len(made), len(result.problems)
+            if left_out:
+                return f"Imported {files} files, each on its own armature, {left_out} left out"
+            return f"Imported {files} files, each on its own armature"
+        motion, name = result.motions[0], made[0].name
+        joints, frames = len(motion.skeleton.parents), motion.num_frames
+        if not frames:
+            return f'Imported "{name}": {joints} joints, rest pose'
+        return f'Imported "{name}": {joints} joints, {frames} frames'
 
 
 class SPARSEMOCAP_OT_import_bvh(ImportOperator, Operator):

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -23,7 +22,7 @@ from ..scene.translations import tr_line
 from ..session import live, sensors
 from ..session.errors import InputError
 from ..session.job import Job
-from ..session.live import LiveSession, answer_of, one_line_of
+from ..session.live import LiveSession, answer_of
 from ..session.new_files import takes_folder
 from ..session.port_scanner import port_scanner
 from ..session.sensors import SavedTake
@@ -31,6 +30,7 @@ from ..session.stage import Stage
 from ..session.steps import Steps
 from ..session.take import takes
 from .job_operator import JobOperator
+from .now_operator import NowOperator
 
 ANSWER_S = 1.0
 
@@ -41,27 +41,6 @@ def connected() -> LiveSession:
     if session is None or not session.is_running:
         raise InputError("No sensors are connected: press Connect first")
     return session
-
-
-class NowOperator:
-    """Mix-in: act() does the work at once; its message or error is reported in one line."""
-
-    report: Callable[[set[str], str], None]  # the operator's own
-
-    def act(self, context: Context) -> str:
-        """Do the work; returns what to report."""
-        raise NotImplementedError
-
-    def execute(self, context: Context) -> set[str]:
-        """Do the work, and report what came of it."""
-        try:
-            message = self.act(context)
-        except Exception as error:
-            self.report({"ERROR"}, tr_line(one_line_of(error)))
-            return {"CANCELLED"}
-        if message:
-            self.report({"INFO"}, tr_line(message))
-        return {"FINISHED"}
 
 
 class SPARSEMOCAP_OT_find_sensors(NowOperator, Operator):

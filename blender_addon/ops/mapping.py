@@ -1,56 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The skeleton mapping: remembered for a skeleton, saved to a file, loaded from one."""
 
-from collections.abc import Callable
-
 import bpy
 from bpy.props import BoolProperty, StringProperty
-from bpy.types import Context, Event, Operator
+from bpy.types import Context, Operator
 
 from ..scene.binding import rest_bones
 from ..scene.mapping import mapping_of, show_joints, show_mapping, shown_joints
 from ..scene.settings import settings_of
-from ..scene.translations import tr_line
 from ..session import mapping
 from ..session.character import still_motion
-from ..session.errors import InputError, one_line
+from ..session.errors import InputError
+from .now_operator import FileOperator, NowOperator
 
 SKIP = {"HIDDEN", "SKIP_SAVE"}
 
 
-class _MappingOperator:
-    """Mix-in: calls do() and reports its message, or the error in one line."""
-
-    report: Callable[[set[str], str], None]  # the operator's own
-
-    def do(self, context: Context) -> str:
-        """What is asked for; returns one line that says so."""
-        raise NotImplementedError
-
-    def execute(self, context: Context) -> set[str]:
-        """Call do() and report."""
-        try:
-            message = self.do(context)
-        except Exception as error:
-            self.report({"ERROR"}, tr_line(one_line(error)))
-            return {"CANCELLED"}
-        self.report({"INFO"}, tr_line(message))
-        return {"FINISHED"}
-
-
-class _FileOperator(_MappingOperator):
-    """Mix-in: opens the file browser first."""
-
-    filepath: StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"})
-    filter_glob: StringProperty(default=f"*{mapping.SUFFIX}", options=SKIP)
-
-    def invoke(self, context: Context, event: Event) -> set[str]:
-        """Open the file browser."""
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
-
-
-class SPARSEMOCAP_OT_show_mapping(_MappingOperator, Operator):
+class SPARSEMOCAP_OT_show_mapping(NowOperator, Operator):
     """Show which of the character's bones are mapped, to check and correct."""
 
     bl_idname = "sparse_mocap.show_mapping"
@@ -58,7 +24,7 @@ class SPARSEMOCAP_OT_show_mapping(_MappingOperator, Operator):
     bl_description = "Show which bones of the character are mapped, to check and correct them"
     bl_options = {"REGISTER"}
 
-    def do(self, context: Context) -> str:
+    def act(self, context: Context) -> str:
         """Map the character."""
         armature = settings_of(context.scene).target
         if armature is None:
@@ -71,7 +37,7 @@ class SPARSEMOCAP_OT_show_mapping(_MappingOperator, Operator):
         return f'Mapped {len(found.joints)} bones of "{armature.name}"'
 
 
-class SPARSEMOCAP_OT_pick_bone(_MappingOperator, Operator):
+class SPARSEMOCAP_OT_pick_bone(NowOperator, Operator):
     """Map the active bone to this joint."""
 
     bl_idname = "sparse_mocap.pick_bone"
@@ -81,7 +47,7 @@ class SPARSEMOCAP_OT_pick_bone(_MappingOperator, Operator):
 
     joint: StringProperty(name="Joint", options=SKIP)
 
-    def do(self, context: Context) -> str:
+    def act(self, context: Context) -> str:
         """Put its name into the row."""
         bone = context.active_pose_bone or context.active_bone
         rows = mapping_of(context)
@@ -91,7 +57,7 @@ class SPARSEMOCAP_OT_pick_bone(_MappingOperator, Operator):
         return f"{mapping.label_of(self.joint)}: {bone.name}"
 
 
-class SPARSEMOCAP_OT_remember_mapping(_MappingOperator, Operator):
+class SPARSEMOCAP_OT_remember_mapping(NowOperator, Operator):
     """Use this mapping for every file with this skeleton."""
 
     bl_idname = "sparse_mocap.remember_mapping"
@@ -99,14 +65,14 @@ class SPARSEMOCAP_OT_remember_mapping(_MappingOperator, Operator):
     bl_description = "Use this mapping for every character and file with this skeleton from now on"
     bl_options = {"REGISTER"}
 
-    def do(self, context: Context) -> str:
+    def act(self, context: Context) -> str:
         """Remember the rows."""
         found = mapping.remember(shown_joints(context))
         show_mapping(context, found)
         return f'Mapping remembered for every skeleton like that of "{found.name}"'
 
 
-class SPARSEMOCAP_OT_forget_mapping(_MappingOperator, Operator):
+class SPARSEMOCAP_OT_forget_mapping(NowOperator, Operator):
     """Forget the remembered mapping of this skeleton."""
 
     bl_idname = "sparse_mocap.forget_mapping"
@@ -114,13 +80,13 @@ class SPARSEMOCAP_OT_forget_mapping(_MappingOperator, Operator):
     bl_description = "Forget this skeleton's mapping and detect its joints automatically again"
     bl_options = {"REGISTER"}
 
-    def do(self, context: Context) -> str:
+    def act(self, context: Context) -> str:
         """Forget the mapping."""
         show_mapping(context, mapping.forget())
         return "Mapping forgotten; the joints are detected automatically again"
 
 
-class SPARSEMOCAP_OT_save_mapping(_FileOperator, Operator):
+class SPARSEMOCAP_OT_save_mapping(FileOperator, Operator):
     """Save this mapping to a file."""
 
     bl_idname = "sparse_mocap.save_mapping"
@@ -128,15 +94,16 @@ class SPARSEMOCAP_OT_save_mapping(_FileOperator, Operator):
     bl_description = "Save this mapping to a .json file"
     bl_options = {"REGISTER"}
 
+    filter_glob: StringProperty(default=f"*{mapping.SUFFIX}", options=SKIP)
     check_existing: BoolProperty(default=True, options=SKIP)
 
-    def do(self, context: Context) -> str:
+    def act(self, context: Context) -> str:
         """Write the file."""
         path = mapping.save(bpy.path.abspath(self.filepath), shown_joints(context))
         return f"Saved {path}"
 
 
-class SPARSEMOCAP_OT_load_mapping(_FileOperator, Operator):
+class SPARSEMOCAP_OT_load_mapping(FileOperator, Operator):
     """Load a mapping from a file."""
 
     bl_idname = "sparse_mocap.load_mapping"
@@ -144,7 +111,9 @@ class SPARSEMOCAP_OT_load_mapping(_FileOperator, Operator):
     bl_description = "Load a mapping from a .json file"
     bl_options = {"REGISTER"}
 
-    def do(self, context: Context) -> str:
+    filter_glob: StringProperty(default=f"*{mapping.SUFFIX}", options=SKIP)
+
+    def act(self, context: Context) -> str:
         """Show the file's mapping; it takes effect with Remember."""
         show_joints(context, mapping.load(bpy.path.abspath(self.filepath)))
         return "Mapping loaded: press Remember to use it"

@@ -15,7 +15,8 @@ from ..session.errors import InputError
 from ..session.live import answer_of
 from ..session.names import shown_site
 from ..session.port_scanner import port_scanner
-from .live import ANSWER_S, NowOperator, connected
+from .live import ANSWER_S, connected
+from .now_operator import NowOperator
 
 NOWHERE = "none"
 """The site of a sensor that is not used."""

@@ -5,17 +5,16 @@ from pathlib import Path
 
 import bpy
 from bpy.props import StringProperty
-from bpy.types import Context, Event, Operator
+from bpy.types import Context, Operator
 
 from ..scene.settings import settings_of
 from ..scene.takes import add_take, find_takes, remove_take
-from ..scene.translations import tr_line
-from ..session.errors import one_line
 from ..session.new_files import takes_folder
 from ..session.take import SUFFIX, takes
+from .now_operator import FileOperator, NowOperator
 
 
-class SPARSEMOCAP_OT_load_take(Operator):
+class SPARSEMOCAP_OT_load_take(FileOperator, Operator):
     """Load a recorded take (.csv)."""
 
     bl_idname = "sparse_mocap.load_take"
@@ -23,30 +22,16 @@ class SPARSEMOCAP_OT_load_take(Operator):
     bl_description = "Load a recorded take (.csv)"
     bl_options = {"REGISTER", "UNDO"}
 
-    filepath: StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"})
     filter_glob: StringProperty(default=f"*{SUFFIX}", options={"HIDDEN", "SKIP_SAVE"})
 
-    def invoke(self, context: Context, event: Event) -> set[str]:
-        """Open the file browser."""
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
-
-    def execute(self, context: Context) -> set[str]:
+    def act(self, context: Context) -> str:
         """Read the file; remember its path if it is a take."""
-        try:
-            take = takes.get(bpy.path.abspath(self.filepath))
-        except Exception as error:
-            self.report({"ERROR"}, tr_line(one_line(error)))
-            return {"CANCELLED"}
+        take = takes.get(bpy.path.abspath(self.filepath))
         add_take(context.scene, self.filepath, take)
-        self.report(
-            {"INFO"},
-            tr_line(f"Loaded a take of {len(take.sensors)} sensors, {take.duration_s:.1f} s"),
-        )
-        return {"FINISHED"}
+        return f"Loaded a take of {len(take.sensors)} sensors, {take.duration_s:.1f} s"
 
 
-class SPARSEMOCAP_OT_find_takes(Operator):
+class SPARSEMOCAP_OT_find_takes(NowOperator, Operator):
     """Add the takes in the folder of takes, and find missing ones there."""
 
     bl_idname = "sparse_mocap.find_takes"
@@ -56,17 +41,16 @@ class SPARSEMOCAP_OT_find_takes(Operator):
 
     directory: StringProperty(name="Folder", subtype="DIR_PATH", options={"SKIP_SAVE"})
 
-    def execute(self, context: Context) -> set[str]:
+    def act(self, context: Context) -> str:
         """Look into the folder."""
         folder = takes_folder(bpy.data.filepath, settings_of(context.scene).folder)
         if self.directory:
             folder = Path(bpy.path.abspath(self.directory))
         added = find_takes(context.scene, folder)
-        self.report({"INFO"}, tr_line(f"{added} more takes in {folder}"))
-        return {"FINISHED"}
+        return f"{added} more takes in {folder}"
 
 
-class SPARSEMOCAP_OT_remove_take(Operator):
+class SPARSEMOCAP_OT_remove_take(NowOperator, Operator):
     """Remove the take from the list; its file stays."""
 
     bl_idname = "sparse_mocap.remove_take"
@@ -80,10 +64,9 @@ class SPARSEMOCAP_OT_remove_take(Operator):
         settings = settings_of(context.scene)
         return 0 <= settings.take_index < len(settings.takes)
 
-    def execute(self, context: Context) -> set[str]:
+    def act(self, context: Context) -> str:
         """Remove its row."""
-        self.report({"INFO"}, tr_line(f'"{remove_take(context.scene)}" is not listed any more'))
-        return {"FINISHED"}
+        return f'"{remove_take(context.scene)}" is not listed any more'
 
 
 CLASSES = (SPARSEMOCAP_OT_load_take, SPARSEMOCAP_OT_find_takes, SPARSEMOCAP_OT_remove_take)

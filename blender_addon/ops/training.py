@@ -7,14 +7,14 @@ from pathlib import Path
 
 import bpy
 from bpy.props import StringProperty
-from bpy.types import Context, Event, Operator
+from bpy.types import Context, Operator
 
 from ..scene import latent_view
 from ..scene.clips import clip_list, opened_database
 from ..scene.settings import SPARSEMOCAP_PG_settings, options_text, settings_of
 from ..scene.takes import add_take
 from ..scene.translations import tr_line
-from ..session.errors import InputError, one_line
+from ..session.errors import InputError
 from ..session.job import Job
 from ..session.methods import models
 from ..session.new_files import takes_folder
@@ -31,7 +31,7 @@ from ..session.training import (
     write_phases,
 )
 from .job_operator import JobOperator
-from .live import NowOperator
+from .now_operator import FileOperator, NowOperator
 
 SKIP = {"SKIP_SAVE"}
 
@@ -75,11 +75,13 @@ class SPARSEMOCAP_OT_train_model(JobOperator, Operator):
         """Use the new model."""
         yield 0.0
         settings_of(context.scene).training.model = result.path
-        types = f" of {len(result.types)} types of motion" if len(result.types) > 1 else ""
-        return f"Trained a model on {result.num_clips} clips{types}"
+        clips, types = result.num_clips, len(result.types)
+        if types > 1:
+            return f"Trained a model on {clips} clips of {types} types of motion"
+        return f"Trained a model on {clips} clips"
 
 
-class SPARSEMOCAP_OT_open_model(Operator):
+class SPARSEMOCAP_OT_open_model(FileOperator, Operator):
     """Open a trained model (.smmodel)."""
 
     bl_idname = "sparse_mocap.open_model"
@@ -87,29 +89,19 @@ class SPARSEMOCAP_OT_open_model(Operator):
     bl_description = "Open a trained model (.smmodel)"
     bl_options = {"REGISTER", "UNDO"}
 
-    filepath: StringProperty(name="File", subtype="FILE_PATH", options=SKIP)
     filter_glob: StringProperty(default=f"*{SUFFIX}", options={"HIDDEN", "SKIP_SAVE"})
 
-    def invoke(self, context: Context, event: Event) -> set[str]:
-        """Open the file browser."""
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
-
-    def execute(self, context: Context) -> set[str]:
+    def act(self, context: Context) -> str:
         """Open the file; remember its path if it is a model of the method."""
         settings = settings_of(context.scene)
-        try:
-            model = models.get(bpy.path.abspath(self.filepath))
-            if model.method != settings.method:
-                raise InputError(
-                    f"This model is for {model.method}, not for {settings.method}: open another "
-                    "one, or change the method"
-                )
-        except Exception as error:
-            self.report({"ERROR"}, tr_line(one_line(error)))
-            return {"CANCELLED"}
+        model = models.get(bpy.path.abspath(self.filepath))
+        if model.method != settings.method:
+            raise InputError(
+                f"This model is for {model.method}, not for {settings.method}: open another "
+                "one, or change the method"
+            )
         settings.training.model = self.filepath
-        return {"FINISHED"}
+        return ""
 
 
 class SPARSEMOCAP_OT_add_training_clip(NowOperator, Operator):
@@ -152,7 +144,7 @@ class SPARSEMOCAP_OT_write_phases(NowOperator, Operator):
         return f"The phases of {count} clips are in {path}"
 
 
-class SPARSEMOCAP_OT_import_phone(Operator):
+class SPARSEMOCAP_OT_import_phone(FileOperator, Operator):
     """Load what a phone recorded."""
 
     bl_idname = "sparse_mocap.import_phone"
@@ -163,30 +155,19 @@ class SPARSEMOCAP_OT_import_phone(Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    filepath: StringProperty(name="File", subtype="FILE_PATH", options=SKIP)
     filter_glob: StringProperty(default="*.zip;*.csv", options={"HIDDEN", "SKIP_SAVE"})
 
-    def invoke(self, context: Context, event: Event) -> set[str]:
-        """Open the file browser."""
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
-
-    def execute(self, context: Context) -> set[str]:
+    def act(self, context: Context) -> str:
         """Convert it to a take in the folder of takes, and list that."""
         settings = settings_of(context.scene)
         folder = takes_folder(bpy.data.filepath, settings.folder)
-        try:
-            path, notes = import_phone(
-                Path(bpy.path.abspath(self.filepath)), folder, settings.training.phone_site
-            )
-            add_take(context.scene, path, takes.get(path))
-        except Exception as error:
-            self.report({"ERROR"}, tr_line(one_line(error)))
-            return {"CANCELLED"}
+        path, notes = import_phone(
+            Path(bpy.path.abspath(self.filepath)), folder, settings.training.phone_site
+        )
+        add_take(context.scene, path, takes.get(path))
         for note in notes:
             self.report({"INFO"}, tr_line(note))
-        self.report({"INFO"}, tr_line(f"Saved as {path}"))
-        return {"FINISHED"}
+        return f"Saved as {path}"
 
 
 class SPARSEMOCAP_OT_use_phone_stream(NowOperator, Operator):

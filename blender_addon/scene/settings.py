@@ -236,7 +236,7 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
         subtype="FACTOR",
     )
     fastest_foot_mps: FloatProperty(
-        name="Fastest (m/s)",
+        name="Speed (m/s)",
         description="Feet that move faster are not locked (m/s)",
         default=0.7,
         min=0.0,

@@ -167,7 +167,8 @@ def _save(module: Any, logs: Path, number: int, folder: Path) -> tuple[str, tupl
         path = free_path(folder / f"take-{stamp()}.csv")
         core().write_take(path, recorded.take)
     except (module.CaptureError, OSError) as error:  # a full disk, for one
-        raise InputError(f"{one_line_of(error)}; what was received is in {logs}") from error
+        reason = one_line_of(error).removeprefix(f"{logs}: ")
+        raise InputError(f"{reason}; what was received is in {logs}") from error
     return str(path), tuple(recorded.warnings)
 
 

@@ -20,7 +20,7 @@ _ROWS = 6
 
 
 class SPARSEMOCAP_UL_clips(UIList):
-    """One line for each clip: name, actor, seconds."""
+    """One line for each clip: name, actor where there is room, seconds."""
 
     bl_idname = "SPARSEMOCAP_UL_clips"
 
@@ -40,10 +40,12 @@ class SPARSEMOCAP_UL_clips(UIList):
         if database is None or index >= len(database.clips.rows):
             return
         row = database.clips.rows[index]
-        split = layout.split(factor=0.58, align=True)
+        has_room = text.is_wide(context)
+        split = layout.split(factor=0.58 if has_room else 0.72, align=True)
         split.label(text=row.label, translate=False)
-        split = split.split(factor=0.45, align=True)
-        split.label(text=row.actor, translate=False)
+        if has_room:
+            split = split.split(factor=0.45, align=True)
+            split.label(text=row.actor, translate=False)
         split.label(text=f"{row.length_s:.1f} s", translate=False)
 
     def filter_items(
@@ -55,8 +57,8 @@ class SPARSEMOCAP_UL_clips(UIList):
             return [], []
         shown = clip_list(context)
         bit = self.bitflag_filter_item
-        text = f"{shown.search} {self.filter_name}"
-        chosen = database.clips.chosen(text, shown.shows_copies)
+        searched = f"{shown.search} {self.filter_name}"
+        chosen = database.clips.chosen(searched, shown.shows_copies)
         order = database.clips.order(shown.sort)
         return [bit if is_chosen else 0 for is_chosen in chosen], list(order)
 

@@ -35,7 +35,7 @@ class SPARSEMOCAP_UL_mapping(UIList):
         index: int,
     ) -> None:
         """Draw the part."""
-        split = layout.split(factor=0.42, align=True)
+        split = layout.split(factor=0.48, align=True)
         split.label(text=label_of(item.name))
         split.label(text=item.source or "-", translate=False)
 

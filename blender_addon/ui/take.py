@@ -41,11 +41,13 @@ class SPARSEMOCAP_UL_takes(UIList):
         row = layout.row(align=True)
         star = "SOLO_ON" if item.is_starred else "SOLO_OFF"
         row.prop(item, "is_starred", text="", icon=star, emboss=False)
-        split = row.split(factor=0.5 if text.is_wide(context) else 0.62, align=True)
         if is_missing(item):
-            split.label(text=item.name, icon="ERROR", translate=False)
+            split = row.split(factor=0.5, align=True)
+            split.label(text=item.name, translate=False)
             split.label(text="missing")
+            row.label(text="", icon="QUESTION")
             return
+        split = row.split(factor=0.5 if text.is_wide(context) else 0.62, align=True)
         split.label(text=item.name, translate=False)
         seconds = split.row(align=True)
         seconds.alignment = "RIGHT"

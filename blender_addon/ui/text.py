@@ -43,15 +43,27 @@ def paragraph(layout: UILayout, context: Context, text: str, icon: str = "NONE")
 
 
 def wrapped(text: str, width_of: Callable[[str], float], room: float) -> list[str]:
-    """The text in lines that are no wider than the room, unless a single word is."""
+    """The text in lines that are no wider than the room; a word that is wider, a path, is cut."""
     lines: list[str] = []
-    for word in text.split():
+    for word in (piece for whole in text.split() for piece in _pieces(whole, width_of, room)):
         longer = f"{lines[-1]} {word}" if lines else word
         if lines and width_of(longer) <= room:
             lines[-1] = longer
         else:
             lines.append(word)
     return lines or [""]
+
+
+def _pieces(word: str, width_of: Callable[[str], float], room: float) -> list[str]:
+    """The word in pieces that fit, cut behind a slash, dash or underscore where there is one."""
+    pieces: list[str] = []
+    while len(word) > 1 and width_of(word) > room:
+        most = next((n for n in range(len(word) - 1, 1, -1) if width_of(word[:n]) <= room), 1)
+        cuts = [n for n in range(2, most + 1) if word[n - 1] in "/\\-_"]
+        end = cuts[-1] if cuts else most
+        pieces.append(word[:end])
+        word = word[end:]
+    return [*pieces, word]
 
 
 def error(layout: UILayout, context: Context, text: str) -> None:

@@ -53,11 +53,10 @@ def _contents(layout: UILayout, context: Context, settings: SPARSEMOCAP_PG_setti
     found = sorted({int(phase) for view in views for phase in set(view.phases.tolist())})
     names = ", ".join(view.name for view in views if view.name)
     rows = [("Types", names)] if names else []
-    rows += [
-        ("Frames", str(sum(len(view.points) for view in views))),
-        ("Phases", ", ".join(PHASES[phase].replace("_", " ") for phase in found)),
-    ]
+    rows.append(("Frames", str(sum(len(view.points) for view in views))))
     text.facts(layout, rows)
+    phases = ", ".join(PHASES[phase].replace("_", " ") for phase in found)
+    text.paragraph(layout, context, f"{tr('Phases')}: {phases}")
     layout.operator(
         "sparse_mocap.toggle_latent_view", icon="SHADERFX", depress=latent_view.is_shown()
     )

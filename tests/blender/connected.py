@@ -33,7 +33,7 @@ def connected(
 
     (tmp_path / "runtime").mkdir(mode=0o700)
     if take_path is None:
-        take = repeated(sparse_mocap.read_take(library().take), 10)
+        take = repeated(sparse_mocap.read_take(library().take), 60)
     else:
         take = sparse_mocap.read_take(take_path)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))

@@ -12,5 +12,15 @@ def test_text_is_wrapped_by_its_width_and_keeps_every_word():
     lines = wrapped(text, len, 20)
     assert lines == ["A simulated", "performer with four", "simulated sensors"]
     assert wrapped(text, lambda line: 2 * len(line), 40) == lines
-    assert wrapped("unbelievably long", len, 5) == ["unbelievably", "long"]
     assert wrapped("", len, 5) == [""]
+
+
+def test_words_that_do_not_fit_are_cut_where_paths_may_be():
+    wrapped = addon("ui.text").wrapped
+    path = "Saved: /home/ada/Sparse Mocap/take-2026-11-30.csv"
+    lines = wrapped(path, len, 12)
+    assert lines == ["Saved:", "/home/ada/", "Sparse", "Mocap/take-", "2026-11-", "30.csv"]
+    assert "".join(lines).replace(" ", "") == path.replace(" ", "")
+    assert max(map(len, lines)) <= 12
+    assert wrapped("unbelievably long", len, 5) == ["unbel", "ievab", "ly", "long"]
+    assert wrapped("wide", lambda line: 9 * len(line), 5) == ["w", "i", "d", "e"]
