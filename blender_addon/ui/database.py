@@ -88,8 +88,8 @@ def _build_form(
         row.label(text="Build from motion files")
     else:
         icon = "TRIA_DOWN" if is_open else "TRIA_RIGHT"
-        row.prop(settings, "is_build_open", text="", icon=icon, emboss=False)
-        row.label(text="Build from motion files")  # text of a pressed button is white
+        is_pressed = settings.is_build_open  # which would make its text white
+        row.prop(settings, "is_build_open", icon=icon, emboss=False, invert_checkbox=is_pressed)
     if not is_open:
         return
     column = box.column()

@@ -41,7 +41,9 @@ class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        layout.prop(settings, "method")
+        row = layout.row()
+        row.use_property_split = text.is_wide(context)  # its names are long
+        row.prop(settings, "method", text=None if text.is_wide(context) else "")
         if len(preset_items(settings.method)) > 1:
             layout.prop(settings, "preset")
         _quality(layout, settings)

@@ -47,7 +47,7 @@ class SPARSEMOCAP_UL_takes(UIList):
             split.label(text="missing")
             row.label(text="", icon="QUESTION")
             return
-        split = row.split(factor=0.5 if text.is_wide(context) else 0.62, align=True)
+        split = row.split(factor=0.5 if text.is_wide(context) else 0.56, align=True)
         split.label(text=item.name, translate=False)
         seconds = split.row(align=True)
         seconds.alignment = "RIGHT"

@@ -18,7 +18,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import rigs
-from live_support import own_runtime, until
+from live_support import own_runtime, serial_folder, until
 from support import Skipped, addon, error_of, library, reconstruct, settings
 
 SITE = "left_ankle"
@@ -193,6 +193,7 @@ def _free_port() -> int:
 def test_a_phone_that_streams_moves_a_character_live(tmp_path):
     if os.name == "nt":
         raise Skipped("Blender must allow the network there")
+    serial_folder()
     (tmp_path / "runtime").mkdir(mode=0o700)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
     _chosen()

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import re
 import sys
+from types import SimpleNamespace
 
 import pytest
+from sparse_mocap.capture import CaptureError
 
-from blender_addon.session import core
+from blender_addon.session import core, sensors
 from blender_addon.session.errors import InputError, one_line
 
 
@@ -57,3 +59,16 @@ def test_the_vendor_folder_is_looked_into_and_not_left_on_the_path(
     core.missing_reason()
     assert sys.modules.pop("sparse_mocap_in_a_box").x == 1
     assert sys.path == before
+
+
+def test_an_empty_recording_names_its_folder_once(tmp_path):
+    def nothing(folder, _):
+        raise CaptureError(f"{folder}: no samples were recorded; check ports and drivers")
+
+    module = SimpleNamespace(recording_to_take=nothing, CaptureError=CaptureError)
+    logs = tmp_path / "capture"
+    with pytest.raises(InputError) as raised:
+        sensors._save(module, logs, 0, tmp_path / "takes")
+    ports = "no samples were recorded; check ports and drivers"
+    assert str(raised.value) == f"{ports}; what was received is in {logs}"
+    assert not (tmp_path / "takes").exists()
