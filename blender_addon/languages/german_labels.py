@@ -270,6 +270,7 @@ LABELS = {
     "Building the database": "Die Datenbank wird erstellt",
     "Simulating the performer": "Der Darsteller wird simuliert",
     "Cancelling": "Wird abgebrochen",
+    "Connected": "Verbunden",
     "Connecting": "Wird verbunden",
     "Opening the database": "Die Datenbank wird geöffnet",
     "Listing the clips": "Die Clips werden aufgelistet",

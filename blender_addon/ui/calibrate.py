@@ -15,7 +15,7 @@ from ..session.calibrating import CALIBRATING, calibrations
 from ..session.names import shown_site
 from ..session.pose_guide import CALIBRATING_BY_POSES
 from . import text
-from .step import StepPanel, action_button, redraw_soon, tick
+from .step import StepPanel, action_button, job_is_running, redraw_soon, tick
 
 
 class SPARSEMOCAP_PT_calibration(StepPanel, Panel):
@@ -48,19 +48,26 @@ class SPARSEMOCAP_PT_calibration(StepPanel, Panel):
             return
         layout.prop(settings, "height_m")
         missing = "" if session.state.sensors else "Waiting for data"
-        if session.state.recording is not None:
+        if session.state.recording is not None and not is_calibrating():
             missing = "Stop the recording first"
-        action_button(
-            layout, "sparse_mocap.calibrate_sensors", "ORIENTATION_GIMBAL", CALIBRATING,
-            is_ready=not missing,
-        )  # fmt: skip
-        if any(sensor["has_orientation"] for sensor in session.state.sensors):
+        if not job_is_running(CALIBRATING_BY_POSES):
+            action_button(
+                layout, "sparse_mocap.calibrate_sensors", "ORIENTATION_GIMBAL", CALIBRATING,
+                is_ready=not missing, has_details=not is_calibrating(),
+            )  # fmt: skip
+        has_orientations = any(sensor["has_orientation"] for sensor in session.state.sensors)
+        if has_orientations and not job_is_running(CALIBRATING):
             action_button(
                 layout, "sparse_mocap.calibrate_by_poses", "OUTLINER_OB_ARMATURE",
-                CALIBRATING_BY_POSES, is_ready=not missing,
+                CALIBRATING_BY_POSES, is_ready=not missing, has_details=not is_calibrating(),
             )  # fmt: skip
         if missing:
             text.paragraph(layout, context, missing, icon="INFO")
+
+
+def is_calibrating() -> bool:
+    """Whether a calibration is running; the viewports then say what to do, and it records."""
+    return job_is_running(CALIBRATING) or job_is_running(CALIBRATING_BY_POSES)
 
 
 def _contents(layout: UILayout, context: Context, path: str) -> None:

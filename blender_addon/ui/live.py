@@ -10,7 +10,6 @@ from ..scene.armature import is_ours
 from ..scene.settings import settings_of
 from ..scene.translations import tr
 from ..session import live, sensors
-from ..session.calibrating import CALIBRATING
 from ..session.core import missing_reason
 from ..session.live import LiveSession, LiveState
 from ..session.live_poses import Quality
@@ -20,6 +19,7 @@ from ..session.names import shown_site
 from ..session.port_scanner import port_scanner
 from . import sensors as sensor_panels
 from . import text
+from .calibrate import is_calibrating
 from .step import StepPanel, action_button, job_is_running, redraw_soon
 
 
@@ -84,11 +84,13 @@ def _session(layout: UILayout, context: Context, session: LiveSession) -> None:
     """The connected sensors. Rows keep their places: what comes and goes is in the last panel."""
     state = session.state
     row = layout.row()
-    icon = "LINKED" if state.is_connected else "SORTTIME"
-    row.label(text=session.label, icon=icon, translate=False)
+    row.label(
+        text="Connected" if state.is_connected else "Connecting",
+        icon="LINKED" if state.is_connected else "SORTTIME",
+    )
     row.operator("sparse_mocap.disconnect_sensors", text="", icon="X")
     if not state.is_connected:
-        layout.label(text="Connecting")
+        text.paragraph(layout, context, session.label)
         return
     sensor_panels.links(layout, state)
     sensor_panels.table(layout, state)
@@ -133,7 +135,8 @@ def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
 
 
 def _recording(layout: UILayout, context: Context, state: LiveState) -> None:
-    settings, is_recording = settings_of(context.scene), state.recording is not None
+    settings = settings_of(context.scene)
+    is_recording = state.recording is not None and not is_calibrating()
     if is_recording or job_is_running(sensors.SAVING_TAKE):
         action_button(
             layout, "sparse_mocap.stop_take", "SNAP_FACE", sensors.SAVING_TAKE,
@@ -142,7 +145,7 @@ def _recording(layout: UILayout, context: Context, state: LiveState) -> None:
     else:
         row = layout.row()
         row.scale_y = 1.5
-        row.enabled = not job_is_running(CALIBRATING)
+        row.enabled = not is_calibrating()
         row.operator("sparse_mocap.record_or_stop", text="Record", icon="REC")
     row = layout.row(align=True)
     row.enabled = not is_recording
@@ -195,7 +198,7 @@ class SPARSEMOCAP_PT_live_messages(StepPanel, Panel):
         for link in state.links:
             if link["message"]:
                 text.paragraph(layout, context, str(link["message"]), icon="INFO")
-        if state.recording is not None:
+        if state.recording is not None and not is_calibrating():
             text.paragraph(layout, context, "The recording continues even if Blender quits", "REC")
         _last_take(layout, context)
 

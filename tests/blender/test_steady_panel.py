@@ -65,6 +65,16 @@ def _lines(state: Any, *, is_live: bool) -> list[str]:
     return lines
 
 
+def _buttons(state: Any) -> list[str]:
+    """The names of the operators that record or stop, as the panel shows them."""
+    before = dict(_PAIRS)
+    _PAIRS.clear()
+    try:
+        return _lines(state, is_live=False)
+    finally:
+        _PAIRS.update(before)
+
+
 def test_buttons_stay_where_they_are():
     settings().database = str(library().database)
     state_of = addon("session.live").LiveState
@@ -89,3 +99,18 @@ def test_buttons_stay_where_they_are():
             found = _lines(state_of(**{**calm, **change}), is_live=is_live)
             assert len(found) == len(wanted), change
             assert found == wanted, change
+
+
+def test_a_calibration_is_not_asked_to_stop_its_own_recording():
+    jobs, calibrating = addon("session.job"), addon("session.calibrating").CALIBRATING
+    recording = {"is_connected": True, "sensors": (_SENSOR,), "recording": {"seconds": 1.0}}
+    state = addon("session.live").LiveState(**recording)
+    before = jobs.current
+    try:
+        assert any("stop_take" in line for line in _buttons(state))
+        jobs.current = lambda: SimpleNamespace(
+            label=calibrating, fraction=0.5, what="", is_cancelled=False
+        )
+        assert not any("stop_take" in line for line in _buttons(state))
+    finally:
+        jobs.current = before
