@@ -138,4 +138,6 @@ SENTENCES = {
     "Get ready": "Bereit machen",
     "Hold still": "Stillhalten",
     "The last pose was {degrees} degrees off": "Die letzte Pose war {degrees} Grad daneben",
+    "As in a mirror": "Wie im Spiegel",
+    "From your right": "Von rechts gesehen",
 }

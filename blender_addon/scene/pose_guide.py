@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import bpy
@@ -19,7 +20,8 @@ _READY = (0.35, 0.65, 1.0, 1.0)
 _HELD = (0.3, 0.9, 0.4, 1.0)
 _WIDTH_PX = 6.0
 _JOINT_PX = 9.0
-_SHARE = 0.5
+_CAPTION_PX = 24.0
+_SHARE = 0.45
 """Of the viewport's height that the figures take."""
 
 _handler: Any = None
@@ -50,7 +52,13 @@ def _draw() -> None:
     line(headline, LARGEST_PX, left, width, 0.32 * height)
     line(hint, 0.5 * LARGEST_PX, left, width, 0.32 * height - 0.9 * LARGEST_PX)
     what = tr(pose_guide.HOLD if now.is_held else pose_guide.READY)
-    line(f"{what}: {now.seconds:.0f}", LARGEST_PX, left, width, 0.32 * height - 2.2 * LARGEST_PX)
+    line(
+        f"{what}: {math.ceil(now.seconds)}",
+        LARGEST_PX,
+        left,
+        width,
+        0.32 * height - 2.2 * LARGEST_PX,
+    )
     more = now.problem
     if now.missed_deg is not None:
         more = tr(pose_guide.MISSED).format(degrees=round(now.missed_deg))
@@ -59,15 +67,17 @@ def _draw() -> None:
 
 
 def _figures(pose: str, colour: drawing.Colour, left: float, width: float, height: float) -> None:
-    """The pose as in a mirror, and beside it as seen from its left."""
+    """The pose as in a mirror, and beside it as seen from the performer's right."""
     points, parents = pose_guide.points_of(pose)
     lowest = float(points[:, 1].min())
     scale = min(_SHARE * height / 2.1, 0.4 * width / 2.1)  # px a metre; arms reach up or out
-    for place, sideways in ((0.3, points[:, 0]), (0.7, points[:, 2])):
-        across = left + place * width
+    for number, (view, places) in enumerate(pose_guide.views_of(points).items()):
+        begin = left + 0.5 * width * number
+        across = begin + 0.25 * width
+        line(tr(view), _CAPTION_PX, begin, 0.5 * width, 0.4 * height + 2.3 * scale)
         drawn = [
             Vector((across + scale * float(x), 0.4 * height + scale * (float(y) - lowest), 0.0))
-            for x, y in zip(sideways, points[:, 1], strict=True)
+            for x, y in places
         ]
         ends = [
             drawn[k] for joint, parent in enumerate(parents) if parent >= 0 for k in (parent, joint)

@@ -52,6 +52,8 @@ POSE_TEXTS = {
 READY = "Get ready"
 HOLD = "Hold still"
 MISSED = "The last pose was {degrees} degrees off"
+MIRRORED = "As in a mirror"
+FROM_RIGHT = "From your right"
 
 
 @dataclass
@@ -79,6 +81,17 @@ def points_of(pose: str) -> tuple[NDArray[np.float64], tuple[int, ...]]:
             motion = sparse_mocap.Motion(skeleton, 1.0, np.zeros((1, 3)), rotations[None])
             return np.asarray(motion.joint_positions("world")[0]), tuple(skeleton.parents)
     raise KeyError(pose)
+
+
+def views_of(points: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """Joints (J, 3) of points_of() as they are drawn, (J, 2) m to the right and up, by view.
+
+    In a mirror the performer's left is at the left.
+    """
+    return {
+        MIRRORED: np.stack([-points[:, 0], points[:, 1]], axis=1),
+        FROM_RIGHT: np.stack([points[:, 2], points[:, 1]], axis=1),
+    }
 
 
 def pose_guide_job(session: LiveSession, folder: Path, times: Times | None = None) -> Job:

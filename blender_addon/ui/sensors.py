@@ -33,13 +33,13 @@ def ports(layout: UILayout, context: Context) -> None:
 
 
 def links(layout: UILayout, state: LiveState) -> None:
-    """Each connected port with its protocol and state: two rows each."""
+    """Each connected port with its protocol and state: two rows each; messages are below."""
     for link in state.links:
         row = layout.row(align=True)
         icon = _LINK_ICONS.get(str(link["state"]), "SORTTIME")
         row.label(text=_port_name(str(link["opened_as"] or link["port"])), icon=icon)
         row.label(text=str(link["driver"]), translate=False)
-        layout.label(text=str(link["message"] or link["state"].capitalize()), icon="BLANK1")
+        layout.label(text=str(link["state"]).capitalize(), icon="BLANK1")
 
 
 def table(layout: UILayout, state: LiveState) -> None:

@@ -112,6 +112,7 @@ def known_texts() -> list[str]:
         pose_guide.CALIBRATING_BY_POSES,
         *pose_guide.POSE_TEXTS.values(),
         *(pose_guide.READY, pose_guide.HOLD, pose_guide.MISSED),
+        *(pose_guide.MIRRORED, pose_guide.FROM_RIGHT),
         *mapping.LABELS.values(),
         *(f"Choose a {what} first" for what in ("motion database", "take")),
         "Train or open a model first",

@@ -55,6 +55,18 @@ def angle_deg(R):
     return np.degrees(np.arccos(np.clip((np.trace(R) - 1) / 2, -1, 1)))
 
 
+def test_the_performer_sees_the_left_at_the_left_as_in_a_mirror():
+    points, _ = pose_guide.points_of("left_knee_up")
+    joints = list(sparse_mocap.body_of_height(1.75).skeleton.names)
+    left, right = joints.index("ltibia"), joints.index("rtibia")
+    mirrored = pose_guide.views_of(points)[pose_guide.MIRRORED]
+    assert mirrored[left, 0] < mirrored[right, 0]
+    assert mirrored[left, 1] > mirrored[right, 1] + 0.3
+    side = pose_guide.views_of(points)[pose_guide.FROM_RIGHT]
+    assert side[left, 0] > side[right, 0] + 0.3  # who looks from the right sees it go right
+    assert side[left, 1] == mirrored[left, 1]
+
+
 def test_the_guide_finds_how_trackers_sit(performance, session, tmp_path):
     until(lambda: session.state.sensors[0]["samples"] >= 100 * LEAD_S)
     shown = []
