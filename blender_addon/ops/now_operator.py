@@ -9,7 +9,7 @@ from bpy.props import StringProperty
 from bpy.types import Context, Event
 
 from ..scene.translations import tr_line
-from ..session.live import one_line_of
+from ..session.errors import one_line
 
 
 class NowOperator:
@@ -26,7 +26,7 @@ class NowOperator:
         try:
             message = self.act(context)
         except Exception as error:
-            self.report({"ERROR"}, tr_line(one_line_of(error)))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
         if message:
             self.report({"INFO"}, tr_line(message))

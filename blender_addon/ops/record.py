@@ -13,7 +13,8 @@ from bpy.types import Context, Event, Operator
 from ..scene import compat, prompt
 from ..scene.settings import settings_of
 from ..scene.translations import tr_line
-from ..session.live import answer_of, one_line_of
+from ..session.errors import one_line
+from ..session.live import answer_of
 from .live import connected
 
 _TICK_S = 0.1
@@ -39,7 +40,7 @@ class SPARSEMOCAP_OT_record_or_stop(Operator):
         try:
             state = connected().state
         except Exception as error:
-            self.report({"ERROR"}, tr_line(one_line_of(error)))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
         if state.recording is not None:
             bpy.ops.sparse_mocap.stop_take("INVOKE_DEFAULT", True)
@@ -79,7 +80,7 @@ class SPARSEMOCAP_OT_record_or_stop(Operator):
         try:
             answer_of(connected().record(), _ANSWER_S)
         except Exception as error:
-            self.report({"ERROR"}, tr_line(one_line_of(error)))
+            self.report({"ERROR"}, tr_line(one_line(error)))
             return {"CANCELLED"}
         if settings.record_plays:
             settings.start_frame = float(context.scene.frame_current)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -89,7 +90,7 @@ def _guide(phases: tuple[Phase, ...], begin_s: float, progress: Progress) -> Non
     for phase in phases:
         end_s += phase.seconds
         while (now_s := time.perf_counter()) < end_s:
-            what = f"{phase.text}: {end_s - now_s:.0f}"
+            what = f"{phase.text}: {math.ceil(end_s - now_s)}"
             if not progress(min(round(1e3 * (now_s - begin_s)), total_ms), total_ms, what):
                 raise Cancelled("Cancelled")
             time.sleep(_POLL_S)

@@ -25,7 +25,8 @@ def _line(error: BaseException) -> tuple[str, bool]:
     if isinstance(error, OSError) and error.strerror and error.filename:
         return f"{error.filename}: {error.strerror}", True
     text = " ".join(str(error).split())
-    if isinstance(error, ValueError | OSError) and text:
+    is_captures = type(error).__module__.endswith("capture.errors")  # whose base is Exception
+    if (is_captures or isinstance(error, ValueError | OSError)) and text:
         return text, True
     if isinstance(error, MemoryError):
         return "Not enough memory: close other programs, or use fewer or shorter files", True

@@ -15,7 +15,7 @@ from typing import Any
 from .core import capture as capture_module
 from .core import core
 from .database import Database
-from .errors import InputError, log, one_line
+from .errors import InputError, one_line
 from .live_poses import LivePoses, Pose, Quality
 from .methods import MethodChoice
 
@@ -181,7 +181,7 @@ class LiveSession:
             client = self._connect()
             self._follow(client)
         except Exception as error:  # shown in the panel
-            self._update(error=one_line_of(error))
+            self._update(error=one_line(error))
         finally:
             if client is not None:
                 self._leave(client)
@@ -251,7 +251,7 @@ class LiveSession:
             self._begun_s = time.perf_counter()
             self._update(warning="", num_dropped=0)
         except Exception as error:  # shown until the sensors or their locations change
-            self._update(warning=one_line_of(error))
+            self._update(warning=one_line(error))
 
     def _look_for_shaking(self, client: Any, samples: Any) -> None:
         if self._shaking is None:
@@ -290,7 +290,7 @@ class LiveSession:
             pose = self._poses.advance(samples)
         except core().ConfigError as error:  # shown until something is chosen anew
             self._poses, self._refused = None, self._active
-            self._update(warning=one_line_of(error))
+            self._update(warning=one_line(error))
             return
         if pose is None:
             return
@@ -324,15 +324,6 @@ def _answer(request: Callable[[Any], Any], future: Future[Any], client: Any) -> 
         future.set_result(request(client))
     except Exception as error:  # raised by answer_of
         future.set_exception(error)
-
-
-def one_line_of(error: BaseException) -> str:
-    """As one_line, but a capture's error messages are used as they are."""
-    if type(error).__module__.endswith("capture.errors"):
-        line = " ".join(str(error).split())
-        log.warning("%s", line)
-        return line
-    return one_line(error)
 
 
 def _remember(sites: dict[str, str]) -> None:

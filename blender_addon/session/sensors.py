@@ -14,7 +14,7 @@ from .core import capture, core
 from .database import Database, databases
 from .errors import InputError, one_line
 from .job import Cancelled, Job, Progress
-from .live import ANSWER_WITHIN_S, LiveSession, answer_of, one_line_of
+from .live import ANSWER_WITHIN_S, LiveSession, answer_of
 from .methods import MethodChoice, has_best_quality, missing_file, needs_database
 from .new_files import free_path, stamp
 from .reconstruct import reconstruct
@@ -167,7 +167,7 @@ def _save(module: Any, logs: Path, number: int, folder: Path) -> tuple[str, tupl
         path = free_path(folder / f"take-{stamp()}.csv")
         core().write_take(path, recorded.take)
     except (module.CaptureError, OSError) as error:  # a full disk, for one
-        reason = one_line_of(error).removeprefix(f"{logs}: ")
+        reason = one_line(error).removeprefix(f"{logs}: ")
         raise InputError(f"{reason}; what was received is in {logs}") from error
     return str(path), tuple(recorded.warnings)
 
