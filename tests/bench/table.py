@@ -86,6 +86,14 @@ def slower(now: dict[str, float], stored: dict[str, float]) -> dict[str, float]:
 ROWS = {"30k": 3.0e4, "100k": 1.0e5, "300k": 3.0e5, "680k": 6.6e5, "5m": 5.1e6}
 
 
+SEARCHES = {
+    "sparse_mocap": "Sparse Mocap",
+    "plain_scan": "plain scan",
+    "faiss_flat": "FAISS, flat",
+    "nanoflann": "nanoflann",
+}
+
+
 def growth(now: dict[str, float]) -> dict[str, list[tuple[float, float]]]:
     """Rows and times (ms) of whatever was measured on several sizes, the smallest first."""
     curves: dict[str, list[tuple[float, float]]] = {}
@@ -96,19 +104,48 @@ def growth(now: dict[str, float]) -> dict[str, list[tuple[float, float]]]:
     return {kind: sorted(curve) for kind, curve in curves.items() if len(curve) > 1}
 
 
+PANELS = {
+    "a frame of live quality": {
+        "recorded_frame/path_regression": "path_regression",
+        "recorded_frame/tautges2011": "tautges2011",
+    },
+    "the 4096 nearest frames, 12 dimensions": {
+        f"recorded_knn/{name}/12d": label for name, label in SEARCHES.items()
+    },
+    "the 4096 nearest frames, 24 dimensions": {
+        f"recorded_knn/{name}/24d": label for name, label in SEARCHES.items()
+    },
+}
+"""What the plot of the growth shows: the curves of each panel, and what they are called there."""
+
+
 def plot_growth(now: dict[str, float], path: Path) -> None:
     from matplotlib.figure import Figure
+    from matplotlib.ticker import LogLocator, NullLocator
 
-    figure = Figure(figsize=(8, 6), layout="constrained")
-    axes = figure.subplots()
-    for kind, curve in growth(now).items():
-        if not kind.endswith("build"):
-            axes.loglog(*zip(*curve, strict=True), marker="o", label=kind.partition("_")[2])
-    axes.set_xlabel("frames of the database")
-    axes.set_ylabel("ms, median of processor time")
-    axes.grid(which="both", alpha=0.3)
-    axes.legend(fontsize="small")
-    figure.savefig(path)
+    curves = growth(now)
+    figure = Figure(figsize=(11, 4.6), layout="constrained")
+    for axes, (title, kinds) in zip(figure.subplots(1, 3), PANELS.items(), strict=True):
+        for kind, label in kinds.items():
+            if kind in curves:
+                axes.loglog(*zip(*curves[kind], strict=True), marker="o", label=label)
+        known = [curves[kind] for kind in kinds if kind in curves]
+        if known:
+            first_rows, first_ms = known[0][0]
+            ends = (first_rows, max(rows for curve in known for rows, _ in curve))
+            times_ms = [first_ms * rows / first_rows for rows in ends]
+            axes.loglog(ends, times_ms, color="0.6", linestyle=":", label="proportional")
+        axes.set_title(title, fontsize="medium")
+        axes.set_xlabel("frames of the database")
+        axes.set_ylabel("ms, median of processor time")
+        axes.set_xticks(list(ROWS.values()), ["30k", "100k", "300k", "660k", "5.1M"])
+        axes.xaxis.set_minor_locator(NullLocator())
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_minor_locator(NullLocator())
+        axes.yaxis.set_major_formatter("{x:g}")
+        axes.grid(alpha=0.3)
+        axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
+    figure.savefig(path, dpi=110)
 
 
 def main(paths: list[Path], store: bool, plot: Path | None = None) -> None:
