@@ -2,10 +2,12 @@
 #include "sparse_mocap/path_regression/frame_solver.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <tuple>
 #include <utility>
 
 #include "sparse_mocap/path_regression/oriented_limbs.hpp"
+#include "sparse_mocap/path_regression/recent_points.hpp"
 #include "sparse_mocap/path_regression/regression.hpp"
 #include "sparse_mocap/retrieval/diagnostics.hpp"
 #include "sparse_mocap/retrieval/extremity_vote.hpp"
@@ -37,10 +39,16 @@ double agreement(const Eigen::VectorXd& spread_m, double wide_spread_m) {
   return 1.0 / (1.0 + mean_square / (wide_spread_m * wide_spread_m));
 }
 
+std::uint64_t next_number() {
+  static std::atomic<std::uint64_t> last = 0;
+  return ++last;
+}
+
 }  // namespace
 
 FrameSolver::FrameSolver(const Config& config, const MethodContext& context)
-    : database_(context.database),
+    : number_(next_number()),
+      database_(context.database),
       signals_(all_signals(with_turning(context.sensors))),
       num_sensors_(static_cast<Eigen::Index>(context.sensors.size())),
       column_weights_(column_weights(signals_, config)),
@@ -164,8 +172,7 @@ void FrameSolver::put_mean_points(const std::vector<Path>& paths, const Eigen::V
     double now, before;  // weights
   };
   static thread_local std::vector<Used> all;
-  static thread_local JointTransforms pose;
-  static thread_local Eigen::VectorXd angles, points;
+  static thread_local RecentPoints recent;
   all.clear();
   const bool with_step = config_.fit.step > 0.0;
   for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -178,18 +185,16 @@ void FrameSolver::put_mean_points(const std::vector<Path>& paths, const Eigen::V
   std::sort(all.begin(), all.end(), [](const Used& a, const Used& b) {
     return std::tie(a.frame, a.now, a.before) < std::tie(b.frame, b.now, b.before);
   });
-  const Skeleton& skeleton = database_->skeleton();
-  now.setZero(12 * skeleton.num_joints());
+  now.setZero(12 * database_->skeleton().num_joints());
   before.setZero(with_step ? now.size() : 0);
+  recent.begin(number_, *database_, config_.fit.lever_m, all.size());
   for (auto used = all.begin(); used != all.end();) {
     Used sum{used->frame, 0.0, 0.0};
     for (; used != all.end() && used->frame == sum.frame; ++used) {
       sum.now += used->now;
       sum.before += used->before;
     }
-    angles = database_->angles().row(sum.frame).transpose().cast<double>();
-    forward_kinematics(skeleton, Vec3::Zero(), angles, pose);
-    put_pose_points(pose, config_.fit.lever_m, points);
+    const Eigen::VectorXd& points = recent.of(sum.frame);
     now += sum.now * points;
     if (with_step) before += sum.before * points;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -52,6 +53,7 @@ class FrameSolver {
   void put_mean_points(const std::vector<retrieval::Path>& paths, const Eigen::VectorXd& weights,
                        Eigen::VectorXd& now, Eigen::VectorXd& before) const;
 
+  std::uint64_t number_;  // no other one has the same
   std::shared_ptr<const MotionDatabase> database_;
   std::vector<retrieval::Signal> signals_;
   Eigen::Index num_sensors_ = 0;

@@ -50,6 +50,10 @@ struct BlockScan::Candidates {
   std::vector<std::uint32_t>& places;
   std::vector<float>& at_most;
 
+  std::size_t num_surely_within(float radius) const {
+    return static_cast<std::size_t>(std::count_if(
+        at_most.begin(), at_most.end(), [=](float distance) { return distance <= radius; }));
+  }
   // A distance within which k rows certainly are; these are at least k.
   float surely_within(std::size_t k) const {
     const auto kth = at_most.begin() + static_cast<std::ptrdiff_t>(k) - 1;
@@ -237,8 +241,8 @@ void BlockScan::near_rows(std::span<const float> query, std::size_t k,
   scan(asked, radius, found);
   while (places.size() < k) scan(asked, radius = 1.5F * radius + asked.rounding, found);
   // Without a finite radius, as for a query that is infinite, all rows are near.
-  if (!std::isfinite(radius)) return;
-  if (const float certain = found.surely_within(k); certain > radius) scan(asked, certain, found);
+  if (!std::isfinite(radius) || found.num_surely_within(radius) >= k) return;
+  scan(asked, found.surely_within(k), found);
 }
 
 }  // namespace sparse_mocap::retrieval

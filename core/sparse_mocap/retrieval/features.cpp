@@ -22,6 +22,17 @@ void append_taps(const SmoothedSignals& smoothed, double rate_hz, std::vector<Ta
     tap->weight *= smoothed.gain / total;
 }
 
+// Columns [begin, begin + N) of a part: the taps' weighted sum of the rows that they look at.
+template <int N>
+void put_columns(std::span<const Tap> taps, std::span<const float* const> rows, std::size_t begin,
+                 std::span<const float> weights, std::span<float> part) {
+  using Columns = Eigen::Array<float, N, 1>;
+  Columns sum = Columns::Zero();
+  for (std::size_t i = 0; i < taps.size(); ++i)
+    sum += static_cast<float>(taps[i].weight) * Eigen::Map<const Columns>(rows[i] + begin);
+  Eigen::Map<Columns>(part.data() + begin) = sum * Eigen::Map<const Columns>(&weights[begin]);
+}
+
 }  // namespace
 
 FeatureLayout::FeatureLayout(const std::vector<FeaturePart>& described, double rate_hz) {
@@ -48,16 +59,18 @@ void feature_at(const SignalWindow& window, const FeatureLayout& layout,
                 std::span<const float> weights, std::span<float> feature) {
   const auto& rows = window.rows;
   const auto columns = static_cast<std::size_t>(rows.cols());
-  std::fill(feature.begin(), feature.end(), 0.0F);
+  static thread_local std::vector<const float*> rows_of_taps;
   for (std::size_t p = 0; p < layout.parts.size(); ++p) {
     const auto part = feature.subspan(p * columns, columns);
-    for (const Tap& tap : layout.parts[p]) {
+    const std::vector<Tap>& taps = layout.parts[p];
+    rows_of_taps.clear();
+    for (const Tap& tap : taps) {
       const auto row = std::clamp(window.at + tap.frame, window.begin, window.end - 1);
-      const float* signals = rows.data() + row * rows.cols();
-      const auto weight = static_cast<float>(tap.weight);
-      for (std::size_t c = 0; c < columns; ++c) part[c] += weight * signals[c];
+      rows_of_taps.push_back(rows.data() + row * rows.cols());
     }
-    for (std::size_t c = 0; c < columns; ++c) part[c] *= weights[c];
+    std::size_t c = 0;
+    for (; c + 4 <= columns; c += 4) put_columns<4>(taps, rows_of_taps, c, weights, part);
+    for (; c < columns; ++c) put_columns<1>(taps, rows_of_taps, c, weights, part);
   }
 }
 

@@ -173,6 +173,13 @@ struct KnnIndex::Searched {
     return features.data() + rows[place] * features.cols();
   }
 
+  // Into the cache, all of a row.
+  void fetch(const float* values) const {
+    constexpr Eigen::Index kLine = 16;  // floats
+    for (Eigen::Index i = 0; i < features.cols(); i += kLine) __builtin_prefetch(values + i);
+    __builtin_prefetch(values + features.cols() - 1);
+  }
+
   // The nearest k as keys: ascending, the places of equally far rows too.
   void search(std::span<const float> query, std::size_t k, Found& found) const {
     found.keys.clear();
@@ -200,18 +207,20 @@ struct KnnIndex::Searched {
     known.ask(query);
     for (std::size_t i = 0; i < places.size(); ++i) {
       constexpr std::size_t kAhead = 16;  // rows that are fetched into the cache meanwhile
-      if (i + kAhead < places.size()) __builtin_prefetch(row(places[i + kAhead]));
+      if (i + kAhead < places.size()) fetch(row(places[i + kAhead]));
       const float* values = row(places[i]);
       const float squared = all_known ? squared_distance(query.data(), values, query.size())
                                       : known.squared_distance(values);
       if (std::isfinite(squared)) found.keys.push_back(key_of(squared, places[i]));
     }
-    if (found.keys.size() > k) {
+    // To sort a few keys too many takes less time than to find the last one that is wanted.
+    if (found.keys.size() > 2 * k) {
       const auto last = found.keys.begin() + static_cast<std::ptrdiff_t>(k);
       std::nth_element(found.keys.begin(), last, found.keys.end());
       found.keys.erase(last, found.keys.end());
     }
     sort_keys(found.keys, found.scratch);
+    if (found.keys.size() > k) found.keys.resize(k);
   }
 
   FeatureRows features;

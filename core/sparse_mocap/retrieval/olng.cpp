@@ -42,13 +42,13 @@ void OnlineLazyNeighbourhoodGraph::connect(Column& column, const Step& step) con
     while (from != earlier.by_frame.end() && frame_of(*from) < wanted) ++from;
     if (from == earlier.by_frame.end()) return;
     if (frame_of(*from) != wanted) continue;
-    if (clip_of_frame_[static_cast<std::size_t>(wanted)] !=
-        clip_of_frame_[static_cast<std::size_t>(frame)])
-      continue;
     Node& node = column.nodes[index_of(key)];
     const Node& before = earlier.nodes[index_of(*from)];
     const float kept = forgotten * before.reward;
     if (kept <= node.before) continue;
+    if (clip_of_frame_[static_cast<std::size_t>(wanted)] !=
+        clip_of_frame_[static_cast<std::size_t>(frame)])
+      continue;
     node.before = kept;
     node.previous = static_cast<std::int32_t>(index_of(*from));
     node.columns_back = step.query;
