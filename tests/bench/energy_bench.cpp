@@ -72,7 +72,8 @@ void minimize_by_majorising(benchmark::State& state) {
   std::size_t i = 0;
   for (auto _ : state) {
     const Problem& problem = problems()[i++ % problems().size()];
-    const auto minimum = retrieval::minimize(problem.energy, problem.subspace, {problem.start}, 50);
+    const auto minimum = retrieval::minimize(problem.energy, problem.subspace,
+                                             std::vector<retrieval::PoseVector>{problem.start}, 50);
     energy += minimum.value;
     iterations += minimum.iterations;
   }

@@ -119,7 +119,7 @@ struct Frame {
   retrieval::PoseSubspace subspace;
   Eigen::VectorXd start;
 
-  Energy energy() const { return {skeleton, weights, terms}; }
+  Energy energy() const { return Energy(skeleton, weights, terms); }
 };
 
 // The frames of a performance, each minimised by minimize(frame).
@@ -147,7 +147,9 @@ void minimisation(benchmark::State& state, const Minimize& minimize) {
 
 void by_majorising(benchmark::State& state) {
   minimisation(state, [](const Frame& frame) {
-    return retrieval::minimize(frame.energy(), frame.subspace, {frame.start}, 50).value;
+    return retrieval::minimize(frame.energy(), frame.subspace,
+                               std::vector<retrieval::PoseVector>{frame.start}, 50)
+        .value;
   });
 }
 

@@ -74,6 +74,12 @@ Neighbourhood gather(const MotionDatabase& database, std::vector<Path> paths,
   Neighbourhood out;
   out.paths = std::move(paths);
   out.weights = std::move(weights);
+  put_poses(database, near_angles, out);
+  return out;
+}
+
+void put_poses(const MotionDatabase& database, const Eigen::VectorXd* near_angles,
+               Neighbourhood& out) {
   const auto n = static_cast<Eigen::Index>(out.paths.size());
   out.angles.resize(database.angles().cols(), n);
   out.positions.resize(database.positions().cols(), n);
@@ -83,9 +89,9 @@ Neighbourhood gather(const MotionDatabase& database, std::vector<Path> paths,
     out.positions.col(i) = database.positions().row(frame).transpose().cast<double>();
   }
   if (near_angles != nullptr) unwind_pose(database.skeleton(), *near_angles, out.angles.col(0));
-  const Eigen::VectorXd best = out.angles.col(0);
+  static thread_local Eigen::VectorXd best;
+  best = out.angles.col(0);
   for (Eigen::Index i = 1; i < n; ++i) unwind_pose(database.skeleton(), best, out.angles.col(i));
-  return out;
 }
 
 std::vector<std::int32_t> clips_of_frames(const MotionDatabase& database) {

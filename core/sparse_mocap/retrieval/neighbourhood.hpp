@@ -40,6 +40,10 @@ void put_softmax_weights(std::span<const Path> paths, double sharpness, Eigen::V
 Neighbourhood gather(const MotionDatabase& database, std::vector<Path> paths,
                      Eigen::VectorXd weights, const Eigen::VectorXd* near_angles);
 
+// The poses of the paths that it has already.
+void put_poses(const MotionDatabase& database, const Eigen::VectorXd* near_angles,
+               Neighbourhood& neighbourhood);
+
 // The clip of each frame, as graphs of paths ask for it.
 std::vector<std::int32_t> clips_of_frames(const MotionDatabase& database);
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <utility>
 
 namespace sparse_mocap::retrieval {
 namespace {
@@ -13,39 +12,41 @@ namespace {
 constexpr double kRelativeDecrease = 1e-7;  // below this share of the value, it has converged
 constexpr int kMaxHalvings = 12;
 
-Eigen::VectorXd best_start(const PoseObjective& objective, const PoseSubspace& subspace,
-                           const std::vector<Eigen::VectorXd>& starts) {
+PoseVector best_start(const PoseObjective& objective, const PoseSubspace& subspace,
+                      std::span<const PoseVector> starts) {
   if (starts.empty()) throw std::invalid_argument("minimize: at least one start is needed");
-  Eigen::VectorXd best;
+  PoseVector best;
   double lowest = std::numeric_limits<double>::infinity();
   for (const auto& start : starts) {
-    Eigen::VectorXd coordinates = subspace.coordinates(start);
+    const PoseVector coordinates = subspace.coordinates(start);
     if (starts.size() == 1) return coordinates;
     const double value = objective.value(subspace.pose(coordinates));
     if (value >= lowest) continue;
     lowest = value;
-    best = std::move(coordinates);
+    best = coordinates;
   }
   return best;
 }
 
 // The minimiser of the model, a little regularised so that flat directions stay where they are.
-Eigen::VectorXd model_step(const PoseObjective::Model& model) {
-  Eigen::MatrixXd h = model.hessian;
+PoseVector model_step(const PoseObjective::Model& model) {
+  PoseMatrix h = model.hessian;
   h.diagonal().array() += 1e-9 * (1.0 + h.diagonal().maxCoeff());
-  return -h.ldlt().solve(model.gradient);
+  PoseVector step = -model.gradient;
+  h.ldlt().solveInPlace(step);
+  return step;
 }
 
 }  // namespace
 
 Minimum minimize(const PoseObjective& objective, const PoseSubspace& subspace,
-                 const std::vector<Eigen::VectorXd>& starts, int max_iterations) {
-  Eigen::VectorXd y = best_start(objective, subspace, starts);
+                 std::span<const PoseVector> starts, int max_iterations) {
+  PoseVector y = best_start(objective, subspace, starts);
   Minimum minimum;
   PoseObjective::Model model = objective.majorised(subspace.pose(y), subspace.basis);
   while (minimum.iterations < max_iterations && !minimum.is_converged) {
     ++minimum.iterations;
-    Eigen::VectorXd step = model_step(model);
+    PoseVector step = model_step(model);
     const double promised = -0.5 * model.gradient.dot(step);
     const double negligible = kRelativeDecrease * std::abs(model.value);
     double value = objective.value(subspace.pose(y + step));

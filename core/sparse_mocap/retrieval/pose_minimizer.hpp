@@ -2,7 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
+#include <span>
 
 #include "sparse_mocap/retrieval/subspace.hpp"
 
@@ -17,18 +17,18 @@ class PoseObjective {
   // model(d) = value + gradient.d + d.hessian.d / 2.
   struct Model {
     double value = 0.0;
-    Eigen::VectorXd gradient;
-    Eigen::MatrixXd hessian;
+    PoseVector gradient;
+    PoseMatrix hessian;
   };
 
-  virtual double value(const Eigen::VectorXd& angles) const = 0;
+  virtual double value(const PoseVector& angles) const = 0;
   // The model that touches the objective at angles and lies above it, for every fixed linearisation
   // of the joints' positions.
-  virtual Model majorised(const Eigen::VectorXd& angles, const Eigen::MatrixXd& basis) const = 0;
+  virtual Model majorised(const PoseVector& angles, const PoseMatrix& basis) const = 0;
 };
 
 struct Minimum {
-  Eigen::VectorXd angles;  // rad, in the subspace
+  PoseVector angles;  // rad, in the subspace
   double value = 0.0;
   int iterations = 0;
   bool is_converged = false;  // false: out of iterations, or no shorter step went down
@@ -38,6 +38,6 @@ struct Minimum {
 // is halved until the value falls. Descends from the best of the starts (poses, projected into the
 // subspace; at least one).
 Minimum minimize(const PoseObjective& objective, const PoseSubspace& subspace,
-                 const std::vector<Eigen::VectorXd>& starts, int max_iterations);
+                 std::span<const PoseVector> starts, int max_iterations);
 
 }  // namespace sparse_mocap::retrieval

@@ -24,12 +24,19 @@ void kinematics_at(const MotionDatabase& database, int frame, Eigen::Ref<Eigen::
 
 PathDerivatives path_derivatives(const MotionDatabase& database,
                                  std::span<const retrieval::Path> paths) {
+  PathDerivatives out;
+  put_path_derivatives(database, paths, out);
+  return out;
+}
+
+void put_path_derivatives(const MotionDatabase& database, std::span<const retrieval::Path> paths,
+                          PathDerivatives& out) {
   const Eigen::Index dimensions = database.positions().cols();
   const auto n = static_cast<Eigen::Index>(paths.size());
-  PathDerivatives out;
   for (auto* matrix : {&out.velocities, &out.accelerations, &out.velocities_before})
     matrix->resize(dimensions, n);
-  Eigen::VectorXd unused(dimensions);
+  static thread_local Eigen::VectorXd unused;
+  unused.resize(dimensions);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& path = paths[static_cast<std::size_t>(i)];
     const Clip& clip = retrieval::clip_at(database, path.frame);
@@ -38,7 +45,6 @@ PathDerivatives path_derivatives(const MotionDatabase& database,
         path.previous_frame >= 0 ? path.previous_frame : std::max(path.frame - 1, clip.begin);
     kinematics_at(database, before, out.velocities_before.col(i), unused);
   }
-  return out;
 }
 
 }  // namespace sparse_mocap::tautges2011

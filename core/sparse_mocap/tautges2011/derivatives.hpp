@@ -19,6 +19,8 @@ struct PathDerivatives {
 
 PathDerivatives path_derivatives(const MotionDatabase& database,
                                  std::span<const retrieval::Path> paths);
+void put_path_derivatives(const MotionDatabase& database, std::span<const retrieval::Path> paths,
+                          PathDerivatives& derivatives);
 
 // Central differences of the positions' rows (63), inside the frame's clip; 0 in clips of fewer
 // than three frames.

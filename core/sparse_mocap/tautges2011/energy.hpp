@@ -22,7 +22,13 @@ struct TermSpace {
 struct KernelTerm {
   TermSpace space;
   double weight = 1.0;
-  Eigen::MatrixXd targets;  // y_i, one column a path
+  Eigen::MatrixXd targets;  // y_i, one column a path; rows beyond those of y are not looked at
+
+  // y_i alone.
+  auto compared_targets() const {
+    const auto joints = static_cast<Eigen::Index>(space.joints.size());
+    return targets.topRows(joints == 0 ? targets.rows() : 3 * joints);
+  }
 };
 
 // A normal distribution instead (figure 11): weight * |whitening (y - mean)|^2.
@@ -47,11 +53,16 @@ class Energy : public retrieval::PoseObjective {
   static constexpr double kSoftening = 1e-3;  // rad or m
 
   // The skeleton must outlive the energy. Terms of weight 0 are left out.
-  Energy(const Skeleton& skeleton, Eigen::VectorXd weights, EnergyTerms terms);
+  explicit Energy(const Skeleton& skeleton, Eigen::VectorXd weights = {}, EnergyTerms terms = {});
 
-  double value(const Eigen::VectorXd& angles) const override;
+  // To be filled for the next frame, in the memory of the last one.
+  Eigen::VectorXd& weights() { return weights_; }
+  EnergyTerms& terms() { return terms_; }
+
+  double value(const retrieval::PoseVector& angles) const override;
   // Each kernel sum collapses to one weighted mean.
-  Model majorised(const Eigen::VectorXd& angles, const Eigen::MatrixXd& basis) const override;
+  Model majorised(const retrieval::PoseVector& angles,
+                  const retrieval::PoseMatrix& basis) const override;
 
   // Also d value / d angles.
   double value_and_gradient(const Eigen::VectorXd& angles, Eigen::VectorXd& gradient) const;

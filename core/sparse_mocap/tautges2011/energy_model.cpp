@@ -17,18 +17,17 @@ class KernelModel : public EnergyModel {
  public:
   explicit KernelModel(const Config& config) : config_(config) {}
 
-  EnergyTerms terms(const Evidence& evidence) const override {
+  void put_terms(const Evidence& evidence, EnergyTerms& out) const override {
     const auto& [neighbours, derivatives, past, signals, dt_s] = evidence;
-    EnergyTerms out;
-    out.kernels.push_back(pose_prior(neighbours, config_));  // equation (5)
-    if (!past) return out;
+    auto& terms = out.kernels;
+    terms.resize(past ? 4 : 1);
+    put_pose_prior(neighbours, config_, terms[0]);  // equation (5)
+    if (!past) return;
     const auto& [angles, x, x_before, accelerations] = *past;
-    out.kernels.push_back(motion_prior(derivatives, config_, x, dt_s));  // equation (7)
-    out.kernels.push_back(
-        smoothness_prior(derivatives, config_, x, x_before, dt_s));  // equation (8)
-    out.kernels.push_back(
-        control_term(derivatives, config_, x, accelerations, signals, dt_s));  // equation (11)
-    return out;
+    put_motion_prior(derivatives, config_, x, dt_s, terms[1]);                // equation (7)
+    put_smoothness_prior(derivatives, config_, x, x_before, dt_s, terms[2]);  // equation (8)
+    put_control_term(derivatives, config_, x, accelerations, signals, dt_s,
+                     terms[3]);  // equation (11)
   }
 
  private:
@@ -40,12 +39,13 @@ class MahalanobisModel : public EnergyModel {
  public:
   explicit MahalanobisModel(const Config& config) : kernels_(config) {}
 
-  EnergyTerms terms(const Evidence& evidence) const override {
-    EnergyTerms out;
-    for (const auto& kernel : kernels_.terms(evidence).kernels)
+  void put_terms(const Evidence& evidence, EnergyTerms& out) const override {
+    EnergyTerms kernels;
+    kernels_.put_terms(evidence, kernels);
+    out.normals.clear();
+    for (const auto& kernel : kernels.kernels)
       if (kernel.weight > 0.0)
         out.normals.push_back(normal_term(kernel, evidence.neighbours.weights));
-    return out;
   }
 
  private:
@@ -58,13 +58,15 @@ class NormalModel : public EnergyModel {
  public:
   explicit NormalModel(const Config& config) : config_(config) {}
 
-  EnergyTerms terms(const Evidence& evidence) const override {
+  void put_terms(const Evidence& evidence, EnergyTerms& out) const override {
     const auto& [neighbours, derivatives, past, signals, dt_s] = evidence;
-    EnergyTerms out;
-    out.normals.push_back(normal_term(pose_prior(neighbours, config_), neighbours.weights));
-    if (!past) return out;
+    out.normals.clear();
+    KernelTerm pose, control;
+    put_pose_prior(neighbours, config_, pose);
+    out.normals.push_back(normal_term(pose, neighbours.weights));
+    if (!past) return;
     const auto& [angles, x, x_before, accelerations] = *past;
-    const auto control = control_term(derivatives, config_, x, accelerations, signals, dt_s);
+    put_control_term(derivatives, config_, x, accelerations, signals, dt_s, control);
     if (control.weight > 0.0) out.normals.push_back(normal_term(control, neighbours.weights));
     const double bend_m =
         derivatives.accelerations.norm() * dt_s * dt_s /
@@ -74,7 +76,6 @@ class NormalModel : public EnergyModel {
          config_.w_prior * config_.w_smooth,
          2.0 * x - x_before,
          Eigen::MatrixXd::Identity(x.size(), x.size()) / std::max(bend_m, Energy::kSoftening)});
-    return out;
   }
 
  private:
@@ -90,9 +91,9 @@ std::unique_ptr<const EnergyModel> make_energy_model(const Config& config) {
 }
 
 NormalTerm normal_term(const KernelTerm& kernel, const Eigen::VectorXd& weights) {
-  NormalTerm term{kernel.space, kernel.weight, kernel.targets * weights, {}};
-  const Eigen::MatrixXd rooted =
-      (kernel.targets.colwise() - term.mean) * weights.cwiseSqrt().asDiagonal();
+  const auto targets = kernel.compared_targets();
+  NormalTerm term{kernel.space, kernel.weight, targets * weights, {}};
+  const Eigen::MatrixXd rooted = (targets.colwise() - term.mean) * weights.cwiseSqrt().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(rooted * rooted.transpose());
   const Eigen::ArrayXd deviations =
       eigen.eigenvalues().array().max(Energy::kSoftening * Energy::kSoftening).sqrt();

@@ -36,7 +36,8 @@ struct Evidence {
 class EnergyModel {
  public:
   virtual ~EnergyModel() = default;
-  virtual EnergyTerms terms(const Evidence& evidence) const = 0;
+  // In the memory of the terms of an earlier frame.
+  virtual void put_terms(const Evidence& evidence, EnergyTerms& terms) const = 0;
 };
 
 std::unique_ptr<const EnergyModel> make_energy_model(const Config& config);

@@ -31,14 +31,14 @@ class Reconstructor : public LiveMethod {
   double history_s() const override { return config_.window_readings / rate_hz(); }
 
   std::optional<PoseEstimate> step(const Reading& reading) override;
+  bool step_into(const Reading& reading, PoseEstimate& estimate) override;
   std::vector<PoseEstimate> flush() override;
   void reset() override;
 
  private:
-  std::vector<Eigen::VectorXd> starts(const retrieval::Neighbourhood& neighbours,
-                                      const retrieval::PoseSubspace& subspace) const;
-  PoseEstimate remember(const Reading& reading, const Eigen::VectorXd& angles,
-                        const retrieval::RootRates& rates);
+  retrieval::PoseVector best_pose() const;
+  void remember(const Reading& reading, const retrieval::PoseVector& angles);
+  void put_pose(double time_s, const retrieval::RootRates& rates, PoseEstimate& estimate);
 
   std::shared_ptr<const MotionDatabase> database_;
   std::vector<retrieval::Signal> signals_;
@@ -49,7 +49,13 @@ class Reconstructor : public LiveMethod {
   std::unique_ptr<const EnergyModel> energy_model_;
   retrieval::OnlineLazyNeighbourhoodGraph graph_;
   retrieval::RootTracker root_;
+  Eigen::RowVectorXf alpha_;                   // of the reading
   std::vector<retrieval::Neighbour> nearest_;  // S^(t+1)
+  retrieval::Neighbourhood neighbours_;
+  PathDerivatives derivatives_;
+  Energy energy_;
+  retrieval::PoseSubspace subspace_;
+  JointTransforms pose_;
   std::optional<Past> past_;
   PoseFollower follower_;
 };

@@ -55,7 +55,9 @@ class Models : public ::testing::Test {
   EnergyTerms terms(PriorModel prior, const std::optional<Past>& past) const {
     Config config;
     config.prior = prior;
-    return make_energy_model(config)->terms({neighbours_, derivatives_, past, signals_, 0.04});
+    EnergyTerms terms;
+    make_energy_model(config)->put_terms({neighbours_, derivatives_, past, signals_, 0.04}, terms);
+    return terms;
   }
 
   Random random_{3};

@@ -42,7 +42,7 @@ void expect_as_low_as_ceres(const MotionDatabase& database, const Config& config
     const PoseSubspace subspace = weighted_pca(found.angles, found.weights, 0.99);
     // Every pose of the neighbourhood is a minimum of its own; the way between is open.
     const Eigen::VectorXd start = 0.5 * (found.angles.col(random.below(64)) + subspace.mean);
-    const Minimum ours = minimize(energy, subspace, {start}, 200);
+    const Minimum ours = minimize(energy, subspace, std::vector<PoseVector>{start}, 200);
     const double theirs = ceres_minimum(energy, subspace, start);
     EXPECT_TRUE(ours.is_converged);
     const double gap = (ours.value - theirs) / theirs;
@@ -68,7 +68,8 @@ TEST(Minimize, NeedsAStart) {
   const Neighbourhood found = retrieved_neighbourhood(*database, random, 16);
   const Energy energy(database->skeleton(), found.weights, all_terms(*database, found, Config()));
   const PoseSubspace subspace = weighted_pca(found.angles, found.weights, 0.99);
-  EXPECT_REFUSED(std::invalid_argument, "at least one start", minimize(energy, subspace, {}, 10));
+  EXPECT_REFUSED(std::invalid_argument, "at least one start",
+                 minimize(energy, subspace, std::vector<PoseVector>(), 10));
 }
 
 TEST(Minimize, EndsAsLowAsCeresOnSyntheticNeighbourhoods) {
@@ -94,7 +95,8 @@ TEST(Minimize, NeverLetsTheEnergyRise) {
     const Eigen::VectorXd start = subspace.mean + random.column(43, 0.5);
     double last = energy.value(subspace.pose(subspace.coordinates(start)));
     for (int iterations = 1; iterations < 15; ++iterations) {
-      const Minimum minimum = minimize(energy, subspace, {start}, iterations);
+      const Minimum minimum =
+          minimize(energy, subspace, std::vector<PoseVector>{start}, iterations);
       EXPECT_LE(minimum.value, last + 1e-12);
       EXPECT_LE(minimum.iterations, iterations);
       EXPECT_NEAR(minimum.value, energy.value(minimum.angles), 1e-9);
@@ -119,7 +121,7 @@ TEST(Minimize, ShortensStepsThatOvershoot) {
                         {{}, {{{}, 1.0, target, Eigen::MatrixXd::Identity(63, 63)}}});
     const PoseSubspace everything{Eigen::VectorXd::Zero(43), Eigen::MatrixXd::Identity(43, 43)};
     const Eigen::VectorXd start = wanted + random.column(43, 1.5);
-    const Minimum minimum = minimize(energy, everything, {start}, 500);
+    const Minimum minimum = minimize(energy, everything, std::vector<PoseVector>{start}, 500);
     Eigen::VectorXd slope;
     energy.value_and_gradient(minimum.angles, slope);
     at_the_bottom += slope.norm() < 1e-2 ? 1 : 0;
@@ -139,10 +141,10 @@ TEST(Minimize, DescendsFromTheBestStart) {
   const PoseSubspace subspace = weighted_pca(found.angles, found.weights, 0.99);
   const Eigen::VectorXd far = subspace.mean + random.column(43, 3.0);
   const Eigen::VectorXd near = found.angles.col(0);
-  EXPECT_LE(minimize(energy, subspace, {far, near}, 1).value,
+  EXPECT_LE(minimize(energy, subspace, std::vector<PoseVector>{far, near}, 1).value,
             energy.value(subspace.pose(subspace.coordinates(near))));
-  EXPECT_EQ(minimize(energy, subspace, {near, far}, 5).value,
-            minimize(energy, subspace, {far, near}, 5).value);
+  EXPECT_EQ(minimize(energy, subspace, std::vector<PoseVector>{near, far}, 5).value,
+            minimize(energy, subspace, std::vector<PoseVector>{far, near}, 5).value);
 }
 
 TEST(Minimize, FindsTheMeanOfANormalDistribution) {
@@ -153,7 +155,7 @@ TEST(Minimize, FindsTheMeanOfANormalDistribution) {
   const KernelTerm kernel{{TermSpace::Compared::angles, {}}, 1.0, targets};
   const Energy energy(skeleton, weights, {{}, {normal_term(kernel, weights)}});
   const PoseSubspace subspace = weighted_pca(targets, weights, 0.9);
-  const Minimum minimum = minimize(energy, subspace, {targets.col(3)}, 20);
+  const Minimum minimum = minimize(energy, subspace, std::vector<PoseVector>{targets.col(3)}, 20);
   EXPECT_LT((minimum.angles - targets.rowwise().mean()).norm(), 1e-6);
   EXPECT_TRUE(minimum.is_converged);
 }

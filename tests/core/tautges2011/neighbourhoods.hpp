@@ -66,8 +66,10 @@ inline tautges2011::EnergyTerms all_terms(const MotionDatabase& database,
       {found.angles.col(0), row(frame - 1), row(frame - 2), Eigen::Matrix3Xd::Constant(3, 4, 2.0)}};
   const auto derivatives = tautges2011::path_derivatives(database, found.paths);
   const auto signals = paper_signals();
-  return tautges2011::make_energy_model(config)->terms(
-      {found, derivatives, past, signals, database.frame_time_s()});
+  tautges2011::EnergyTerms terms;
+  tautges2011::make_energy_model(config)->put_terms(
+      {found, derivatives, past, signals, database.frame_time_s()}, terms);
+  return terms;
 }
 
 }  // namespace sparse_mocap::testing

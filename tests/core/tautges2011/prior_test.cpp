@@ -36,8 +36,18 @@ class Terms : public ::testing::Test {
     x_ = stacked_ends(pose);
   }
 
-  double value(const KernelTerm& term) const {
+  // What a term comes to that put(term) makes, in the memory of another one.
+  template <typename Put>
+  double value(const Put& put) const {
+    KernelTerm term{{TermSpace::Compared::angles, {lwrist}}, 9.0, Eigen::MatrixXd::Ones(7, 3)};
+    put(term);
     return Energy(skeleton_, neighbours_.weights, {{term}, {}}).value(q_);
+  }
+  double control_value(const Eigen::Matrix3Xd& accelerations,
+                       const std::vector<retrieval::Signal>& signals) const {
+    return value([&](KernelTerm& term) {
+      put_control_term(derivatives_, config_, x_now_, accelerations, signals, kDt, term);
+    });
   }
   // sum_i w_i sqrt|d_i|
   template <typename Difference>
@@ -63,24 +73,27 @@ class Terms : public ::testing::Test {
 };
 
 TEST_F(Terms, PosePriorIsEquationFive) {
-  expect_near(value(pose_prior(neighbours_, config_)),
+  expect_near(value([&](KernelTerm& term) { put_pose_prior(neighbours_, config_, term); }),
               5.5 * 0.7 * kernel_sum([&](Eigen::Index i) -> Eigen::VectorXd {
                 return neighbours_.angles.col(i) - q_;
               }));
 }
 
 TEST_F(Terms, MotionPriorIsEquationsSixAndSeven) {
-  expect_near(value(motion_prior(derivatives_, config_, x_now_, kDt)),
-              5.5 * 0.3 * kernel_sum([&](Eigen::Index i) -> Eigen::VectorXd {
-                return x_now_ + derivatives_.velocities.col(i) * kDt +
-                       0.5 * derivatives_.accelerations.col(i) * kDt * kDt - x_;
-              }));
+  expect_near(
+      value([&](KernelTerm& term) { put_motion_prior(derivatives_, config_, x_now_, kDt, term); }),
+      5.5 * 0.3 * kernel_sum([&](Eigen::Index i) -> Eigen::VectorXd {
+        return x_now_ + derivatives_.velocities.col(i) * kDt +
+               0.5 * derivatives_.accelerations.col(i) * kDt * kDt - x_;
+      }));
 }
 
 // dt sqrt(|a_i - a|), the factor belonging to the square root.
 TEST_F(Terms, SmoothnessPriorIsEquationsEightAndNine) {
   const Eigen::VectorXd a = (x_ - 2.0 * x_now_ + x_before_) / (kDt * kDt);
-  expect_near(value(smoothness_prior(derivatives_, config_, x_now_, x_before_, kDt)),
+  expect_near(value([&](KernelTerm& term) {
+                put_smoothness_prior(derivatives_, config_, x_now_, x_before_, kDt, term);
+              }),
               5.5 * 0.25 * kDt * kernel_sum([&](Eigen::Index i) -> Eigen::VectorXd {
                 return derivatives_.accelerations.col(i) - a;
               }));
@@ -95,7 +108,7 @@ TEST_F(Terms, ControlTermIsEquationsTenAndEleven) {
       out.segment<3>(3 * s) = y.segment<3>(rows[static_cast<std::size_t>(s)]);
     return out;
   };
-  expect_near(value(control_term(derivatives_, config_, x_now_, alpha, paper_signals(), kDt)),
+  expect_near(control_value(alpha, paper_signals()),
               1.75 * kernel_sum([&](Eigen::Index i) -> Eigen::VectorXd {
                 const Eigen::VectorXd moved = x_now_ + derivatives_.velocities_before.col(i) * kDt;
                 return next_to_sensors(moved) + 0.5 * kDt * kDt * alpha.reshaped() -
@@ -110,10 +123,16 @@ TEST_F(Terms, ControlTermLeavesSilentSensorsOut) {
   const std::vector<retrieval::Signal> delivering{all[0], all[2], all[3]};
   Eigen::Matrix3Xd rest(3, 3);
   rest << alpha.col(0), alpha.col(2), alpha.col(3);
-  expect_near(value(control_term(derivatives_, config_, x_now_, alpha, all, kDt)),
-              value(control_term(derivatives_, config_, x_now_, rest, delivering, kDt)));
+  expect_near(control_value(alpha, all), control_value(rest, delivering));
   alpha.setConstant(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_EQ(value(control_term(derivatives_, config_, x_now_, alpha, all, kDt)), 0.0);
+  EXPECT_EQ(control_value(alpha, all), 0.0);
+}
+
+Eigen::Matrix3Xd heading_accelerations(const Reading& reading, const JointTransforms& pose,
+                                       const std::vector<retrieval::Signal>& signals) {
+  Eigen::Matrix3Xd accelerations;
+  put_heading_accelerations(reading, pose, signals, accelerations);
+  return accelerations;
 }
 
 TEST(HeadingAccelerations, TurnReadingsByThePoseAndTakeGravityAway) {
