@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -67,7 +68,7 @@ def two_actors(real_data: Path, tmp_path_factory: pytest.TempPathFactory) -> Pat
     folder = tmp_path_factory.mktemp("hdm05")
     for path in sorted((real_data / "hdm05").iterdir()):
         if path.name.startswith(("HDM_bd", "HDM_mm")):
-            (folder / path.name).symlink_to(path)
+            shutil.copy(path, folder)
     return folder
 
 
