@@ -2,6 +2,7 @@
 #include "sparse_mocap/path_regression/config.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "sparse_mocap/base/errors.hpp"
 
@@ -20,12 +21,22 @@ FeaturePart half_change(const SmoothedSignals& average, double later_s, double e
   return {moved(later_s, 0.5), moved(-earlier_s, -0.5)};
 }
 
-constexpr double kLiveLookAhead_s = 0.04;
+constexpr double kLiveLookAhead_s = Config::kLeastLag_s;
+
+void apply(const MethodSettings& settings, Config& config) {
+  if (!settings.preset.empty() && settings.preset != presets().front().name)
+    throw ConfigError("unknown preset '" + settings.preset + "'; path_regression has default");
+  options().apply(settings.options, config);
+}
 
 }  // namespace
 
+int Config::held_frames(double rate_hz) const {
+  return static_cast<int>(std::floor((lag_s - kLiveLookAhead_s) * rate_hz + 1e-6));
+}
+
 // Found by trial on HDM05, for known and unknown performers.
-Config live_config() {
+Config live_config(const MethodSettings& settings) {
   Config config;
   const SmoothedSignals now{0.0, 0.04, -0.2, kLiveLookAhead_s};
   config.features = {{now}, half_change(now, 0.0, 0.16)};
@@ -37,10 +48,11 @@ Config live_config() {
   config.fit.lever_m = 0.2;
   config.fit.step = 2.0;
   config.fit.smoothness = 16.0;
+  apply(settings, config);
   return config;
 }
 
-Config whole_take_config() {
+Config whole_take_config(const MethodSettings& settings) {
   Config config;
   const SmoothedSignals now{0.0, 0.04, -0.2, 0.2};
   config.features = {{now}, half_change(now, 0.12, 0.12)};
@@ -59,6 +71,7 @@ Config whole_take_config() {
   // bend a little too far on the way.
   config.fit.hinge = 0.0;
   config.wide_spread_m = 0.07;
+  apply(settings, config);
   return config;
 }
 
@@ -121,16 +134,13 @@ const OptionTable<Config>& options() {
                   "weight of even movement of the root")
           .number("hinge_weight", &Config::fit, &FitWeights::hinge, 0.0, 1e6,
                   "how firmly knees and elbows stay within the range in which they bend")
+          .number(
+              "lag_s", &Config::lag_s, Config::kLeastLag_s, Config::kMostLag_s,
+              "live: how long a pose waits for readings after its own, s; one that waits is more "
+              "accurate")
           .integer("max_iterations", &Config::max_iterations, 1, 10'000,
                    "steps of the fit, at most");
   return table;
-}
-
-Config with_settings(Config config, const MethodSettings& settings) {
-  if (!settings.preset.empty() && settings.preset != presets().front().name)
-    throw ConfigError("unknown preset '" + settings.preset + "'; path_regression has default");
-  options().apply(settings.options, config);
-  return config;
 }
 
 }  // namespace sparse_mocap::path_regression

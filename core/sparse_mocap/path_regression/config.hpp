@@ -36,17 +36,20 @@ struct Config {
   FitWeights fit;
   double wide_spread_m = 0.15;  // poses that differ so much count half
   int max_iterations = 10;
+
+  // Live: how long a pose waits for readings after its own, s. Retrieval looks the least lag ahead;
+  // for the rest of it the pose is held back.
+  double lag_s = kLeastLag_s;
+  static constexpr double kLeastLag_s = 0.04, kMostLag_s = 0.4;
+  int held_frames(double rate_hz) const;
 };
 
-// Each pose must be ready soon: retrieval looks 40 ms ahead.
-Config live_config();
-// Every pose may depend on the whole take.
-Config whole_take_config();
+// Each pose must be ready soon. Throws ConfigError.
+Config live_config(const MethodSettings& settings = {});
+// Every pose may depend on the whole take. Throws ConfigError.
+Config whole_take_config(const MethodSettings& settings = {});
 
 const std::vector<PresetInfo>& presets();
 const OptionTable<Config>& options();
-
-// The configuration with the settings applied. Throws ConfigError.
-Config with_settings(Config config, const MethodSettings& settings);
 
 }  // namespace sparse_mocap::path_regression

@@ -15,7 +15,8 @@ LiveReconstructor::LiveReconstructor(const Config& config, const MethodContext& 
       graph_(retrieval::clips_of_frames(solver_.database()),
              {solver_.config().penalty, solver_.config().forgetting}),
       recent_(solver_.reach_back() + solver_.look_ahead() + 2,
-              static_cast<Eigen::Index>(3 * solver_.signals().size())) {}
+              static_cast<Eigen::Index>(3 * solver_.signals().size())),
+      num_held_(static_cast<std::size_t>(solver_.config().held_frames(rate_hz()))) {}
 
 std::optional<PoseEstimate> LiveReconstructor::step(const Reading& measured) {
   PoseEstimate estimate;
@@ -34,13 +35,20 @@ bool LiveReconstructor::step_into(const Reading& measured, PoseEstimate& estimat
   if (num_waiting_ == waiting_.size()) waiting_.emplace_back();
   waiting_[num_waiting_++] = reading;
   if (static_cast<int>(num_waiting_) <= solver_.look_ahead()) return false;
-  solve_next(estimate);
+  solve_next();
+  if (fitted_.size() <= num_held_) return false;
+  put_fitted(fitted_.size() - 1 - num_held_, estimate);
   return true;
 }
 
 std::vector<PoseEstimate> LiveReconstructor::flush() {
   std::vector<PoseEstimate> last;
-  while (num_waiting_ > 0) solve_next(last.emplace_back());
+  while (num_waiting_ > 0) {
+    solve_next();
+    if (fitted_.size() > num_held_) put_fitted(fitted_.size() - 1 - num_held_, last.emplace_back());
+  }
+  for (std::size_t held = std::min(num_held_, fitted_.size()); held > 0; --held)
+    put_fitted(fitted_.size() - held, last.emplace_back());
   reset();
   return last;
 }
@@ -48,48 +56,58 @@ std::vector<PoseEstimate> LiveReconstructor::flush() {
 void LiveReconstructor::reset() {
   frames_.clear();
   targets_.clear();
+  fitted_.clear();
   graph_.reset();
   turning_.reset();
   num_waiting_ = 0;
   num_recent_ = 0;
 }
 
-void LiveReconstructor::solve_next(PoseEstimate& estimate) {
+// The pose that follows the last one, and those held back anew.
+void LiveReconstructor::solve_next() {
   const Eigen::Index at = num_recent_ - static_cast<Eigen::Index>(num_waiting_);
   const retrieval::SignalWindow window{recent_, 0, num_recent_, at};
   solver_.search(window, neighbours_);
   graph_.extend(neighbours_);
   solver_.retrieve(graph_.paths(), window, waiting_.front(), retrieved_);
-  const double time_s = waiting_.front().time_s;
-  std::rotate(waiting_.begin(), waiting_.begin() + 1, waiting_.end());
-  --num_waiting_;
   if (!targets_.empty())
     retrieved_.target.agreement =
         evened_agreement(retrieved_.target.agreement, targets_.back().agreement);
   add_frame();
-  fit_.fit(frames_, targets_, frames_.size() - 1, solver_.config().max_iterations);
-  put_estimate(frames_.back(), time_s, targets_.back().feet.certainty, estimate);
-  estimate.diagnostics.swap(retrieved_.diagnostics);
-  estimate.extremities = retrieved_.extremities;
+  const std::size_t num_free = std::min(num_held_ + 1, frames_.size());
+  fit_.fit(frames_, targets_, frames_.size() - num_free, solver_.config().max_iterations);
+  std::rotate(waiting_.begin(), waiting_.begin() + 1, waiting_.end());
+  --num_waiting_;
 }
 
 // The retrieved frame after the others, its pose that of the last one; the oldest one makes place.
 void LiveReconstructor::add_frame() {
-  if (frames_.empty()) {
-    frames_.push_back(start_of(skeleton(), 1.0 / rate_hz(), retrieved_.target, nullptr));
-    targets_.push_back(retrieved_.target);
-    return;
-  }
-  if (frames_.size() > BandedSystem::kReach) {
+  const bool is_first = frames_.empty();
+  if (frames_.size() > BandedSystem::kReach + num_held_) {
     std::rotate(frames_.begin(), frames_.begin() + 1, frames_.end());
     std::rotate(targets_.begin(), targets_.begin() + 1, targets_.end());
+    std::rotate(fitted_.begin(), fitted_.begin() + 1, fitted_.end());
   } else {
     frames_.emplace_back();
     targets_.emplace_back();
+    fitted_.emplace_back();
   }
-  frames_.back() = frames_[frames_.size() - 2];
-  move_root(1.0 / rate_hz(), retrieved_.target, frames_.back());
+  if (is_first) {
+    frames_.back() = start_of(skeleton(), 1.0 / rate_hz(), retrieved_.target, nullptr);
+  } else {
+    frames_.back() = frames_[frames_.size() - 2];
+    move_root(1.0 / rate_hz(), retrieved_.target, frames_.back());
+  }
   std::swap(targets_.back(), retrieved_.target);
+  fitted_.back().time_s = waiting_.front().time_s;
+  fitted_.back().diagnostics.swap(retrieved_.diagnostics);
+  fitted_.back().extremities = retrieved_.extremities;
+}
+
+void LiveReconstructor::put_fitted(std::size_t at, PoseEstimate& estimate) {
+  put_estimate(frames_[at], fitted_[at].time_s, targets_[at].feet.certainty, estimate);
+  estimate.diagnostics.swap(fitted_[at].diagnostics);
+  estimate.extremities = fitted_[at].extremities;
 }
 
 }  // namespace sparse_mocap::path_regression

@@ -11,7 +11,8 @@
 
 namespace sparse_mocap::path_regression {
 
-// Live quality: each pose follows its reading after the few that retrieval looks ahead.
+// Live quality: each pose waits for the few readings that retrieval looks ahead, and for as many
+// more as lag_s allows; while it waits it is fitted anew with each pose after it.
 class LiveReconstructor : public LiveMethod {
  public:
   // Throws ConfigError.
@@ -19,7 +20,7 @@ class LiveReconstructor : public LiveMethod {
 
   const Skeleton& skeleton() const override { return solver_.database().skeleton(); }
   double rate_hz() const override { return solver_.database().rate_hz(); }
-  double latency_s() const override { return solver_.look_ahead() / rate_hz(); }
+  double latency_s() const override { return num_late() / rate_hz(); }
   double history_s() const override { return solver_.reach_back() / rate_hz(); }
 
   std::optional<PoseEstimate> step(const Reading& reading) override;
@@ -28,15 +29,25 @@ class LiveReconstructor : public LiveMethod {
   void reset() override;
 
  private:
-  void solve_next(PoseEstimate& estimate);
+  // What an estimate has beside its fitted pose.
+  struct Fitted {
+    double time_s = 0.0;
+    Diagnostics diagnostics;
+    ExtremityVote extremities;
+  };
+
+  double num_late() const { return solver_.look_ahead() + static_cast<double>(num_held_); }
+  void solve_next();
   void add_frame();
+  void put_fitted(std::size_t at, PoseEstimate& estimate);
 
   FrameSolver solver_;
   TurningOf turning_;
   TakeFit fit_;
-  // The last frames, as many as a fit looks back, and the targets they had.
+  // The last frames: those held back, and before them as many as a fit looks back.
   std::vector<FittedFrame> frames_;
   std::vector<FrameTarget> targets_;
+  std::vector<Fitted> fitted_;
   retrieval::OnlineLazyNeighbourhoodGraph graph_;
   retrieval::FeatureRows recent_;  // signals of the last readings, oldest first
   Eigen::Index num_recent_ = 0;    // of them known
@@ -44,6 +55,7 @@ class LiveReconstructor : public LiveMethod {
   std::size_t num_waiting_ = 0;
   std::vector<retrieval::Neighbour> neighbours_;
   RetrievedFrame retrieved_;
+  std::size_t num_held_;
 };
 
 }  // namespace sparse_mocap::path_regression

@@ -24,12 +24,11 @@ MethodEntry method() {
   entry.info.needs_database = true;
   entry.make_live = [](const MethodSettings& settings,
                        const MethodContext& context) -> std::unique_ptr<LiveMethod> {
-    return std::make_unique<LiveReconstructor>(with_settings(live_config(), settings), context);
+    return std::make_unique<LiveReconstructor>(live_config(settings), context);
   };
   entry.make_whole_take = [](const MethodSettings& settings,
                              const MethodContext& context) -> std::unique_ptr<WholeTakeMethod> {
-    return std::make_unique<WholeTakeReconstructor>(with_settings(whole_take_config(), settings),
-                                                    context);
+    return std::make_unique<WholeTakeReconstructor>(whole_take_config(settings), context);
   };
   return entry;
 }
