@@ -179,6 +179,7 @@ def build_database(
     mirror: bool = False,
     reverse: bool = False,
     tempo_copies: Sequence[float] = (0.8, 1.25),
+    own_proportions: bool = False,
     exclude: Sequence[str] = (),
     labels: Mapping[str, tuple[str, str, str, str, float]] = ...,
     label_warnings: Sequence[str] = (),
@@ -188,13 +189,14 @@ def build_database(
     """Builds a database from motion files, or folders of them, and writes it to output.
 
     rate_hz is the database's frame rate; mirror, reverse and tempo_copies (factors) add copies of
-    each clip; exclude: glob patterns of files to leave out; labels: actor, class, origin, license
-    and the rate (Hz, 0: not said) by a motion file's path. strict: the first file that cannot be
-    used or is doubtful ends it, otherwise it is skipped or taken with a warning; keep_duplicates:
-    files with the same motion are all taken; num_threads 0: one for each processor; by_hand: the
-    source's joint by standard joint; mappings: the file of remembered mappings; read: what the
-    files do not say; remote(requests): does the work on files in place of this process, and gives
-    an iterator over what answer_request says of each request, None while the next is not there yet.
+    each clip; own_proportions: readings are of each body's own, not the averaged ones; exclude:
+    glob patterns of files to leave out; labels: actor, class, origin, license and the rate (Hz, 0:
+    not said) by a motion file's path. strict: the first file that cannot be used or is doubtful
+    ends it, otherwise it is skipped or taken with a warning; keep_duplicates: files with the same
+    motion are all taken; num_threads 0: one for each processor; by_hand: the source's joint by
+    standard joint; mappings: the file of remembered mappings; read: what the files do not say;
+    remote(requests): does the work on files in place of this process, and gives an iterator over
+    what answer_request says of each request, None while the next is not there yet.
     Raises FormatError, and Cancelled if progress returns False; the output is then left as it was.
     """
 

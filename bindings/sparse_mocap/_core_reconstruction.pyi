@@ -248,3 +248,13 @@ def nearest_poses(
     positions (T, 21, 3) m are in the heading frame. No retrieval from the database can be closer.
     excluded_clips, by index, and copies at other tempos are not used.
     """
+
+def graph_times(
+    database: MotionDatabase, take: Readings, window: int, excluded_clips: Sequence[int] = ()
+) -> tuple[float, float, float]:
+    """Returns what paths cost a reading: s online, s when made anew, and how often they agree.
+
+    The online lazy neighbourhood graph of Tautges et al. 2011 beside one that is made anew for each
+    reading from the last `window` of them; processor time of the process in the graphs alone. The
+    last figure is the share of readings with the same end of the best path.
+    """

@@ -39,6 +39,7 @@ def build_database(
     mirror: bool = False,
     reverse: bool = False,
     tempo_copies: Sequence[float] = (0.8, 1.25),
+    own_proportions: bool = False,
     exclude: Sequence[str] = (),
     metadata: Path | None = None,
     workers: Executor | None = None,
@@ -48,10 +49,11 @@ def build_database(
 
     rate_hz: frames a second of the database; mirror, reverse: whether each clip is added mirrored
     and played backwards too; tempo_copies: tempos at which a small database holds each clip once
-    more; exclude: glob patterns of file names to leave out; metadata: a table of labels
-    file,actor,class,source,license (None: metadata.csv of the source folders); workers: who reads
-    the files in place of this process (see workers.cluster), who must find them at the same paths;
-    the database is the same.
+    more; own_proportions: readings are simulated on each body's own proportions, not on the
+    averaged ones that its poses are shown on (Tautges et al. 2011, figure 10a); exclude: glob
+    patterns of file names to leave out; metadata: a table of labels file,actor,class,source,license
+    (None: metadata.csv of the source folders); workers: who reads the files in place of this
+    process (see workers.cluster), who must find them at the same paths; the database is the same.
 
     Further options: strict stops at the first file that cannot be used or whose motion is doubtful
     (check_clip in the core has the limits); read: what the files do not say (see read_options);
@@ -73,6 +75,7 @@ def build_database(
         mirror=mirror,
         reverse=reverse,
         tempo_copies=tempo_copies,
+        own_proportions=own_proportions,
         exclude=exclude,
         labels=labels,
         label_warnings=warnings,

@@ -66,6 +66,25 @@ excluded_clips, by index, and copies at other tempos are not used.)doc");
 
 positions (T, 21, 3) m are in the heading frame. No retrieval from the database can be closer.
 excluded_clips, by index, and copies at other tempos are not used.)doc");
+  m.def(
+      "graph_times",
+      [](const Database& database, const Readings& take, int window,
+         const std::vector<int>& excluded_clips) {
+        if (window < 1) throw py::value_error("window must be at least 1");
+        GraphTimes times;
+        {
+          const py::gil_scoped_release release;
+          times = graph_times(*database, take.sensors, take.readings, window, excluded_clips);
+        }
+        return py::make_tuple(times.online_s, times.anew_s, times.same);
+      },
+      py::arg("database"), py::arg("take"), py::arg("window"),
+      py::arg("excluded_clips") = std::vector<int>{},
+      R"doc(Returns what paths cost a reading: s online, s when made anew, and how often they agree.
+
+The online lazy neighbourhood graph of Tautges et al. 2011 beside one that is made anew for each
+reading from the last `window` of them; processor time of the process in the graphs alone. The last
+figure is the share of readings with the same end of the best path.)doc");
 }
 
 }  // namespace sparse_mocap::python

@@ -94,7 +94,7 @@ Paths motion_files(const Paths& sources, const std::vector<std::string>& exclude
 }
 
 BuildReport build(const Paths& sources, const fs::path& output, double rate_hz, bool mirror,
-                  bool reverse, const std::vector<double>& tempo_copies,
+                  bool reverse, const std::vector<double>& tempo_copies, bool own_proportions,
                   const std::vector<std::string>& exclude, bool strict, bool keep_duplicates,
                   int num_threads, const Labels& labels,
                   const std::vector<std::string>& label_warnings, const JointNames& by_hand,
@@ -106,6 +106,7 @@ BuildReport build(const Paths& sources, const fs::path& output, double rate_hz, 
   options.add_mirrored = mirror;
   options.add_reversed = reverse;
   options.tempo_copies = tempo_copies;
+  options.has_own_proportions = own_proportions;
   const Progress progress = progress_from(callback, details);
   const py::gil_scoped_release release;
   return build_database(sources, output, options, progress);
@@ -203,8 +204,9 @@ Raises FormatError when a source does not exist or nothing is left.)doc");
         R"doc(As find_motion_files, each with the name that its clips have as their source.)doc");
   m.def("build_database", &build, py::arg("sources"), py::arg("output"), py::kw_only(),
         py::arg("rate_hz") = 25.0, py::arg("mirror") = false, py::arg("reverse") = false,
-        py::arg("tempo_copies") = BuildOptions().tempo_copies, py::arg("exclude") = no_patterns,
-        py::arg("strict") = false, py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
+        py::arg("tempo_copies") = BuildOptions().tempo_copies, py::arg("own_proportions") = false,
+        py::arg("exclude") = no_patterns, py::arg("strict") = false,
+        py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
         py::arg("labels") = Labels(), py::arg("label_warnings") = no_patterns,
         py::arg("by_hand") = JointNames(), py::arg("mappings") = py::none(),
         py::arg("read") = ReadOptions(), py::arg("remote") = py::none(),
@@ -212,13 +214,14 @@ Raises FormatError when a source does not exist or nothing is left.)doc");
         R"doc(Builds a database from motion files, or folders of them, and writes it to output.
 
 rate_hz is the database's frame rate; mirror, reverse and tempo_copies (factors) add copies of
-each clip; exclude: glob patterns of files to leave out; labels: actor, class, origin, license
-and the rate (Hz, 0: not said) by a motion file's path. strict: the first file that cannot be
-used or is doubtful ends it, otherwise it is skipped or taken with a warning; keep_duplicates:
-files with the same motion are all taken; num_threads 0: one for each processor; by_hand: the
-source's joint by standard joint; mappings: the file of remembered mappings; read: what the
-files do not say; remote(requests): does the work on files in place of this process, and gives an
-iterator over what answer_request says of each request, None while the next is not there yet. Raises
+each clip; own_proportions: readings are of each body's own, not the averaged ones; exclude: glob
+patterns of files to leave out; labels: actor, class, origin, license and the rate (Hz, 0: not
+said) by a motion file's path. strict: the first file that cannot be used or is doubtful ends it,
+otherwise it is skipped or taken with a warning; keep_duplicates: files with the same motion are all
+taken; num_threads 0: one for each processor; by_hand: the source's joint by standard joint;
+mappings: the file of remembered mappings; read: what the files do not say; remote(requests): does
+the work on files in place of this process, and gives an iterator over what answer_request says of
+each request, None while the next is not there yet. Raises
 FormatError, and Cancelled if progress returns False; the output is then left as it was.)doc");
   m.def("answer_request", &answer, py::arg("request"), py::arg("read"),
         R"doc(Does the work on a motion file that an import asks for, as bytes.

@@ -16,6 +16,7 @@ from sparse_mocap import FormatError, MotionDatabase
 from sparse_mocap.evaluation import (
     BASELINES,
     ClipResult,
+    Content,
     Evaluation,
     Movement,
     Settings,
@@ -32,7 +33,7 @@ from sparse_mocap.evaluation import (
     motion_files,
     source_path,
 )
-from sparse_mocap.evaluation.metrics import euler_errors_deg
+from sparse_mocap.evaluation.metrics import LIMBS, euler_errors_deg
 
 Cli = Callable[..., Result]
 
@@ -72,6 +73,16 @@ def test_one_clip_of_each_actor_and_class_is_tested() -> None:
     clips = fake_clips()
     tests = [clips[i].name for i in choose_tests(clips)]
     assert tests == ["a_hop_1", "a_walk_1", "b_hop_1", "b_walk_1"]
+
+
+def test_more_clips_of_some_classes_can_be_tested() -> None:
+    clips = fake_clips()
+    walks = Content(classes=("w*",), actors=("a",))
+    tests = [clips[i].name for i in choose_tests(clips, among=walks, per_class=2)]
+    assert tests == ["a_walk_1", "a_walk_2"]
+    half = Content(with_mirrored=False, every=2).rest(clips)
+    shown = [clips[i].name for i in range(len(clips)) if i not in half]
+    assert shown == ["a_walk_2", "a_hop_1", "b_walk_1", "a_hop_1"]
 
 
 def test_a_pattern_on_file_names_chooses_other_tests() -> None:
@@ -178,7 +189,8 @@ def test_every_method_is_tested_on_every_clip(found: dict) -> None:
     assert len(found["tests"]) == 2 * 4
     for test in found["tests"]:
         assert list(test["error_cm"]) == methods
-        assert test["excluded_clips"] == 6
+        # The kicks mirror each other, and the squats are one movement at two tempos.
+        assert test["excluded_clips"] == (6 if test["motion_class"] == "walk" else 12)
     assert found["left_out"] == []
 
 
@@ -190,6 +202,12 @@ def test_the_figures_are_means_over_clips(found: dict) -> None:
         assert set(method["class_errors_cm"]) == {"walk", "squat", "kickleft", "kickright"}
         assert len(method["joint_errors_cm"]) == 21
         assert sum(method["histogram"]["frames"]) > 100
+        frames = method["root_frame"]["histogram"]["frames"]
+        assert sum(frames) == sum(method["histogram"]["frames"])
+        root_frame = [test["root_frame_cm"][name] for test in found["tests"]]
+        assert method["root_frame"]["p90_cm"] == pytest.approx(np.percentile(root_frame, 90))
+        assert 0 < method["centred_cm"] <= method["mean_cm"] * 1.01
+        assert set(method["limb_angles_deg"]) == set(LIMBS)
         assert (method["joint_angle_deg"] is None) == (name in BASELINES)
         assert (method["latency_ms"] is None) == (name not in LIVE)
 

@@ -27,6 +27,7 @@ from ..evaluation.movement import DRIFT_AFTER_S
 from ..methods import DEFAULT_METHOD, Experiment, method_info, methods, renamed_preset
 from ..workers import cluster
 from .console import print_table, progress_bar, warn, write_json
+from .evaluate_paper import PaperChoice, paper_options, run_paper
 from .evaluated_files import DEFAULT_FPS, chosen_pairs, evaluation_database, with_files
 from .options import (
     PAPER_SITES,
@@ -76,8 +77,9 @@ def _simulation_options(command: Callable[..., Any]) -> Callable[..., Any]:
     help="The folder of motion capture, for both the database and the tests.",
 )  # fmt: skip
 @click.option(
-    "--scenario", type=click.IntRange(1, 3), required=True,
-    help="; ".join(f"{number}: {text}" for number, text in SCENARIOS.items()) + ".",
+    "--scenario", type=click.IntRange(1, 3),
+    help="; ".join(f"{number}: {text}" for number, text in SCENARIOS.items())
+    + ". Must be given, except with --paper.",
 )  # fmt: skip
 @click.option(
     "--tests", metavar="GLOB", help="Files to test; by default one for each actor and class."
@@ -100,7 +102,12 @@ def _simulation_options(command: Callable[..., Any]) -> Callable[..., Any]:
     "--experiment", "experiments", multiple=True, metavar="NAME",
     help="Run a comparison from the method's paper; `methods NAME` lists them. Can be repeated.",
 )  # fmt: skip
-@click.option("--paper", is_flag=True, help="Run all comparisons from the methods' papers.")
+@click.option(
+    "--paper", is_flag=True,
+    help="Run all comparisons from the methods' papers. Without --scenario: all that "
+    "Tautges et al. 2011 evaluate, written as PAPER.md and plots; what is done is kept in --cache.",
+)  # fmt: skip
+@paper_options
 @click.option(
     "--offline", is_flag=True, help="Also evaluate best quality, for methods that have it."
 )
@@ -115,7 +122,7 @@ def _simulation_options(command: Callable[..., Any]) -> Callable[..., Any]:
 @scheduler_option
 def evaluate(
     source: Path,
-    scenario: int,
+    scenario: int | None,
     tests: str | None,
     training: str | None,
     json_path: Path | None,
@@ -130,6 +137,7 @@ def evaluate(
     cache: Path | None,
     scheduler: str | None,
     fps: float,
+    whole_paper: PaperChoice,
 ) -> None:
     """Measures errors on held-out clips.
 
@@ -143,6 +151,11 @@ def evaluate(
         raise click.UsageError(
             "--scheduler needs --cache: a folder for the database that all workers can read."
         )
+    if scenario is None:
+        if not paper:
+            raise click.UsageError("Missing option '--scenario': 1, 2 or 3.")
+        run_paper(source, cache, whole_paper)
+        return
     names, presets = _renamed(names, presets)
     common = Settings(scenario, tests=tests, pairs=chosen_pairs(training, tests), **simulation)
     if paper or experiments:

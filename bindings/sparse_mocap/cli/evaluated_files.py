@@ -4,8 +4,6 @@
 from __future__ import annotations
 
 import atexit
-import hashlib
-import json
 import tempfile
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
@@ -14,14 +12,15 @@ from pathlib import Path
 
 import click
 
-from .. import MotionDatabase, _core, build_database, mapping_folder
-from ..evaluation import Settings, choose_tests, motion_files
+from .. import MotionDatabase
+from ..evaluation import Settings, choose_tests
+from ..evaluation.kept_database import DEFAULT_RATE_HZ, kept_database
 from ..files import remove_folder
 from .console import ProgressCallback, warn
 
 __all__ = ["DEFAULT_FPS", "chosen_pairs", "evaluation_database", "with_files"]
 
-DEFAULT_FPS = 25.0
+DEFAULT_FPS = DEFAULT_RATE_HZ
 
 
 def chosen_pairs(training: str | None, tests: str | None) -> tuple[tuple[str, str], ...]:
@@ -59,27 +58,6 @@ def evaluation_database(
         prefix="sparse_mocap_", ignore_cleanup_errors=True
     ) as temporary:
         atexit.register(remove_folder, temporary)  # Windows removes no database that is open
-        path = Path(temporary) / "evaluation.smdb"
-        if cache is not None:
-            cache.mkdir(parents=True, exist_ok=True)
-            rate = "" if fps == DEFAULT_FPS else f"{fps:g}_hz_"
-            path = cache.absolute() / f"evaluation_{rate}{_fingerprint(source)}.smdb"
-        if not path.exists():
-            build_database(
-                [source],
-                path,
-                rate_hz=fps,
-                mirror=True,
-                mappings=mapping_folder(),
-                progress=progress,
-                workers=workers,
-            )
+        folder = Path(temporary) if cache is None else cache
+        path = kept_database([source], folder, rate_hz=fps, progress=progress, workers=workers)
         yield MotionDatabase(path)
-
-
-def _fingerprint(source: Path) -> str:
-    files = {path for same_name in motion_files(source).values() for path in same_name}
-    files |= set(source.rglob("*.[aA][sS][fF]"))
-    files.add(Path(_core.__file__))  # another version may build a different database
-    seen = [[str(path), path.stat().st_size, path.stat().st_mtime_ns] for path in sorted(files)]
-    return hashlib.sha256(json.dumps(seen).encode()).hexdigest()[:12]

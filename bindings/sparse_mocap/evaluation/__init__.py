@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How good a reconstruction is: held-out clips, simulated sensors, known truth."""
 
+from .clip_result import ClipResult, TestClip
 from .contender import Contender, contenders, variants
 from .metrics import (
     frame_errors,
@@ -11,15 +12,25 @@ from .metrics import (
 )
 from .movement import Movement
 from .performance import Performance, performed
-from .protocol import SCENARIOS, choose_tests, excluded_clips, motion_files, source_path
-from .result import ClipResult, Evaluation, TestClip
+from .protocol import (
+    EVERYTHING,
+    SCENARIOS,
+    Content,
+    choose_tests,
+    excluded_clips,
+    motion_files,
+    source_path,
+)
+from .result import Evaluation
 from .runner import BASELINES, Settings, evaluate
 
 __all__ = [
     "BASELINES",
+    "EVERYTHING",
     "SCENARIOS",
     "ClipResult",
     "Contender",
+    "Content",
     "Evaluation",
     "Movement",
     "Performance",

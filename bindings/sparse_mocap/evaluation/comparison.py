@@ -3,20 +3,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import Clip, Motion, MotionDatabase
 from ..table_errors import TableError
+from .clip_result import ClipResult, clip_result
 from .metrics import (
     CM,
+    centred_errors,
     euler_errors_deg,
-    frame_errors,
     interpolated,
     joint_angle_errors_deg,
     joint_errors,
+    limb_angles_deg,
     mean_jerk,
     nearest,
 )
@@ -33,7 +36,6 @@ from .movement import (
     turns_deg,
 )
 from .performance import heading_rotations
-from .result import ClipResult, clip_result
 
 __all__ = ["Estimate", "Truth", "world_of"]
 
@@ -50,6 +52,8 @@ class Estimate:
     times_s: Floats
     positions: Floats
     """(T, J, 3) m, heading frame."""
+    root_positions: Floats
+    """(T, J, 3) m, root frame."""
     rotations: Floats | None = None
     """(T, J, 4), root without heading; None for baselines that only know positions."""
     world: World | None = None
@@ -58,6 +62,8 @@ class Estimate:
     """(T, A) instead of rotations, for baselines that show frames of the database."""
     match: str | None = None
     """How well the reconstruction says that it matches."""
+    work: Mapping[str, float] = field(default_factory=dict)
+    """What the method says of its own work, means over the frames."""
 
 
 def world_of(motion: Motion, floor_m: float = 0.0) -> World:
@@ -73,18 +79,25 @@ def world_of(motion: Motion, floor_m: float = 0.0) -> World:
 class Truth:
     """What was performed: a clip as the database has it, and its motion."""
 
-    def __init__(self, database: MotionDatabase, clip: Clip, motion: Motion) -> None:
-        """Takes the clip's motion on the database's skeleton, at its rate."""
+    def __init__(
+        self, database: MotionDatabase, clip: Clip, motion: Motion, clip_times_s: Floats
+    ) -> None:
+        """Takes the clip's motion as performed, on the database's skeleton, at its rate.
+
+        clip_times_s (T,): when in the clip each of the motion's frames is; they differ where it is
+        performed at another tempo.
+        """
         self.rate_hz = database.rate_hz
         self.skeleton = database.skeleton
-        rows = slice(clip.begin, min(clip.end, clip.begin + motion.num_frames))
-        self.positions = np.asarray(database.array("positions")[rows], float)
-        count = len(self.positions)
-        self.positions = self.positions.reshape(count, -1, 3)
+        rows = np.rint(clip_times_s * self.rate_hz).astype(int)
+        rows = clip.begin + rows[rows < clip.end - clip.begin]
+        count = len(rows)
+        self.positions = np.asarray(motion.joint_positions("heading"))[:count]
+        self.root_positions = np.asarray(motion.joint_positions("root"))[:count]
         self.times_s = np.arange(count) / self.rate_hz
         self.rotations = heading_rotations(motion)[:count]
-        root_height = np.asarray(database.array("root_motion")[rows], float)[:, _HEIGHT]
-        whole = world_of(motion, float(motion.joint_positions("world")[0, 0, 1] - root_height[0]))
+        root_height = float(database.array("root_motion")[rows[0], _HEIGHT])
+        whole = world_of(motion, float(motion.joint_positions("world")[0, 0, 1] - root_height))
         self.world = World(whole.ankles[:count], whole.root[:count], whole.heading_rad[:count])
         self.stands = np.asarray(database.array("contacts")[rows]) > 0.5
         self.lowest_ankle_m = float(self.world.ankles[..., 1].min())
@@ -104,13 +117,11 @@ class Truth:
         if not is_known.any():
             raise self._problem
         wanted = self.times_s[is_known]
-        errors = joint_errors(
-            self.positions[is_known], interpolated(times, estimate.positions, wanted)
-        )
+        placed = self._placed(is_known, estimate, wanted)
         jerk = mean_jerk(estimate.positions, self.rate_hz)
         if estimate.rotations is None or estimate.world is None:
             eulers = self._euler_errors_deg(is_known, estimate)
-            return clip_result(errors, frame_errors(errors), jerk, euler_errors_deg=eulers)
+            return clip_result(*placed, jerk, euler_errors_deg=eulers)
         rotations = nearest(times, estimate.rotations, wanted)
         angles = joint_angle_errors_deg(self.rotations[is_known], rotations)
         true_angles = self.skeleton.angles(self.rotations[is_known])
@@ -121,7 +132,29 @@ class Truth:
             interpolated(times, estimate.world.heading_rad, wanted),
         )
         moved = self._movement(estimate.positions, estimate.rotations, world, is_known)
-        return clip_result(errors, frame_errors(errors), jerk, angles, moved, label, eulers)
+        return clip_result(
+            *placed,
+            jerk,
+            angle_errors_deg=angles,
+            movement=moved,
+            match=label,
+            euler_errors_deg=eulers,
+            work=estimate.work,
+        )
+
+    def _placed(
+        self, is_known: NDArray[np.bool_], estimate: Estimate, wanted_s: Floats
+    ) -> tuple[Floats, Floats, Floats, Floats]:
+        """Returns how far off joints and limbs are, as clip_result() takes it."""
+        times, true = estimate.times_s, self.positions[is_known]
+        found = interpolated(times, estimate.positions, wanted_s)
+        in_root = interpolated(times, estimate.root_positions, wanted_s)
+        return (
+            joint_errors(true, found),
+            centred_errors(true, found),
+            joint_errors(self.root_positions[is_known], in_root),
+            limb_angles_deg(true, found, self.skeleton.names),
+        )
 
     def _euler_errors_deg(self, is_known: NDArray[np.bool_], estimate: Estimate) -> Floats | None:
         if estimate.angles_rad is None:

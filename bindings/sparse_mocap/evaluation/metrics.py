@@ -3,15 +3,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "LIMBS",
+    "centred_errors",
     "euler_errors_deg",
     "frame_errors",
     "interpolated",
     "joint_angle_errors_deg",
     "joint_errors",
+    "limb_angles_deg",
     "mean_jerk",
     "nearest",
 ]
@@ -22,6 +27,20 @@ CM = 100.0
 LOWER_BODY = slice(1, 7)
 """Hips, knees and ankles among the joints of the standard skeleton, which begins at the root."""
 UPPER_BODY = slice(7, 21)
+
+LIMBS = {
+    "trunk": ("root", "thorax"),
+    "head": ("lowerneck", "head"),
+    "left upper arm": ("lclavicle", "lhumerus"),
+    "left forearm": ("lhumerus", "lradius"),
+    "right upper arm": ("rclavicle", "rhumerus"),
+    "right forearm": ("rhumerus", "rradius"),
+    "left thigh": ("lhipjoint", "lfemur"),
+    "left shank": ("lfemur", "ltibia"),
+    "right thigh": ("rhipjoint", "rfemur"),
+    "right shank": ("rfemur", "rtibia"),
+}
+"""The joints of the standard skeleton between whose ends a limb lies."""
 
 
 def interpolated(times_s: Floats, values: Floats, wanted_s: Floats) -> Floats:
@@ -39,6 +58,25 @@ def joint_errors(truth: Floats, estimate: Floats) -> Floats:
 def frame_errors(errors: Floats) -> Floats:
     """Returns for each frame the RMS over its joints (T, J)."""
     return np.asarray(np.sqrt(np.mean(errors**2, axis=1)))
+
+
+def centred_errors(truth: Floats, estimate: Floats) -> Floats:
+    """Returns the distances (T, J), in m, after each joint's mean error is taken off.
+
+    What is left is how well the movement is met; the mean error is of the performer's style and of
+    how the sensors sit.
+    """
+    off = estimate - truth
+    return np.asarray(np.linalg.norm(off - off.mean(axis=0), axis=-1))
+
+
+def limb_angles_deg(truth: Floats, estimate: Floats, names: Sequence[str]) -> Floats:
+    """Returns the angles (T, L) between the directions of LIMBS, from positions (T, J, 3)."""
+    at = {name: i for i, name in enumerate(names)}
+    begins, ends = ([at[limb[k]] for limb in LIMBS.values()] for k in (0, 1))
+    one, other = (positions[:, ends] - positions[:, begins] for positions in (truth, estimate))
+    sine = np.linalg.norm(np.cross(one, other), axis=-1)
+    return np.asarray(np.degrees(np.arctan2(sine, np.sum(one * other, axis=-1))))
 
 
 def joint_angle_errors_deg(truth: Floats, estimate: Floats) -> Floats:

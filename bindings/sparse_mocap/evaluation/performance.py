@@ -22,6 +22,7 @@ from .. import (
 from ..readings import SensorInput
 from ..rotations import product
 from ..take import SensorRecord, Take
+from .changed_motion import at_tempos, scaled
 
 __all__ = ["Performance", "heading_rotations", "performed"]
 
@@ -39,6 +40,8 @@ class Performance:
     """On the standard skeleton with the performer's own proportions."""
     take: Take
     """Of sensors that give every channel."""
+    tempo_curve_s: tuple[Floats, Floats]
+    """Times of the performance, and of the recorded motion then."""
 
     def seen(self, channels: Mapping[str, Collection[str]]) -> Take:
         """Returns the take of some of its sensors, with these channels of each."""
@@ -55,6 +58,10 @@ class Performance:
         """The truth: the motion on the database's skeleton and at its rate."""
         return to_standard(self.motion, database.skeleton)[0].resampled(database.rate_hz)
 
+    def clip_times_s(self, count: int, rate_hz: float) -> Floats:
+        """When in the recorded motion the performance is, at so many times from its beginning."""
+        return np.interp(np.arange(count) / rate_hz, *self.tempo_curve_s)
+
 
 def performed(
     path: str | os.PathLike[str],
@@ -63,11 +70,18 @@ def performed(
     noise: str = "none",
     seed: int = 0,
     rate_hz: float = SENSOR_RATE_HZ,
+    body_scale: float = 1.0,
+    tempos: Sequence[float] = (1.0,),
 ) -> Performance:
-    """Returns the performance of a motion file. Raises FormatError, MappingError and OSError."""
+    """Returns the performance of a motion file.
+
+    body_scale: the performer's size beside the recorded one. tempos: how fast the motion is done,
+    from its beginning to its end, linear between. Raises FormatError, MappingError and OSError.
+    """
     motion, _ = to_standard(read_motion(path)[0])
+    motion, curve_s = at_tempos(scaled(motion, body_scale), tempos)
     ideal = simulated(motion, sites, rate_hz, with_position=True)
-    return Performance(motion, noisy(ideal, noise_presets()[noise], seed))
+    return Performance(motion, noisy(ideal, noise_presets()[noise], seed), curve_s)
 
 
 def _with(record: SensorRecord, channels: Collection[str]) -> SensorRecord:

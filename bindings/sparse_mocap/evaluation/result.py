@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .metrics import CM, LOWER_BODY, UPPER_BODY, frame_errors
+from .clip_result import TestClip
+from .metrics import LIMBS
 from .movement import DRIFT_AFTER_S, Movement
 
-__all__ = ["ClipResult", "Evaluation", "TestClip", "clip_result"]
+__all__ = ["HISTOGRAM_BIN_CM", "Evaluation"]
 
 Floats = NDArray[np.float64]
 
@@ -21,57 +22,6 @@ JUMP_CM = 50.0
 CLOSE_CM = 5.0
 FORMAT_VERSION = 1
 """Of the evaluation's JSON."""
-
-
-@dataclass(frozen=True)
-class ClipResult:
-    """One method on one test clip."""
-
-    frame_errors_cm: Floats
-    """(T,) RMS over the joints."""
-    joint_errors_cm: Floats
-    """(J,) mean over the frames."""
-    jerk_kmps3: float
-    joint_angle_errors_deg: Floats | None = None
-    """(J,) mean over the frames; None where only positions are known."""
-    movement: Movement | None = None
-    """None where only positions are known."""
-    match: str | None = None
-    """What the reconstruction says of itself; None of baselines."""
-    euler_errors_deg: Floats | None = None
-    """(T,) mean over the joints' Euler angles; None where only positions are known."""
-    upper_body_cm: float = float("nan")
-    """Mean over the frames of the RMS over the joints above the hips."""
-    lower_body_cm: float = float("nan")
-    """The same of hips and legs."""
-
-    @property
-    def mean_angle_deg(self) -> float | None:
-        """The mean over frames and joints."""
-        angles = self.joint_angle_errors_deg
-        return None if angles is None else float(angles.mean())
-
-    @property
-    def mean_cm(self) -> float:
-        """The mean over the frames."""
-        return float(self.frame_errors_cm.mean())
-
-
-@dataclass
-class TestClip:
-    """One test: the clip and how each method did on it."""
-
-    __test__ = False  # no test case of pytest
-
-    name: str
-    actor: str
-    motion_class: str
-    num_frames: int
-    num_excluded: int
-    jerk_kmps3: float
-    movement: Movement
-    """Of the truth."""
-    results: dict[str, ClipResult] = field(default_factory=dict)
 
 
 @dataclass
@@ -99,6 +49,31 @@ class Evaluation:
     def frame_errors_cm(self, method: str) -> Floats:
         """Returns the errors of all frames of all tests."""
         return np.concatenate([test.results[method].frame_errors_cm for test in self.tests])
+
+    def root_frame_cm(self, method: str) -> dict[str, Any]:
+        """Returns the errors in the full root frame, in which Tautges et al. 2011 measure."""
+        known = [test.results[method].root_frame_errors_cm for test in self.tests]
+        errors = [own for own in known if own is not None]
+        if not errors:
+            return {}
+        means = np.array([own.mean() for own in errors])
+        return _spread(means) | {"histogram": _histogram(np.concatenate(errors))}
+
+    def limb_angles_deg(self, method: str) -> dict[str, float]:
+        """Returns how far each limb's direction is off, a mean over the tests."""
+        known = [test.results[method].limb_angles_deg for test in self.tests]
+        found = [own for own in known if own is not None]
+        means = np.mean(found, axis=0).tolist() if found else []
+        return dict(zip(LIMBS, means, strict=False))
+
+    def work(self, method: str) -> dict[str, float]:
+        """Returns what a method says of its own work, means over the tests."""
+        told = [test.results[method].work for test in self.tests]
+        return {name: float(np.mean([own[name] for own in told])) for name in told[0]}
+
+    def centred_cm(self, method: str) -> float:
+        """Returns the error without each clip's own mean error, a mean over the tests."""
+        return float(np.mean([test.results[method].centred_cm for test in self.tests]))
 
     def joint_errors_cm(self, method: str) -> dict[str, float]:
         """Returns each joint's error, a mean over the tests."""
@@ -241,14 +216,13 @@ class Evaluation:
 
     def summary(self, method: str) -> dict[str, Any]:
         """Returns the figures of one method as JSON has them."""
-        means, frames = self.clip_means_cm(method), self.frame_errors_cm(method)
         eulers = self.euler_errors_deg(method)
-        num_bins = int(frames.max() / HISTOGRAM_BIN_CM) + 1
-        counts = np.histogram(frames, num_bins, (0.0, num_bins * HISTOGRAM_BIN_CM))[0]
         return {
-            "mean_cm": float(means.mean()),
-            "median_cm": float(np.median(means)),
-            "p90_cm": float(np.percentile(means, 90)),
+            **_spread(self.clip_means_cm(method)),
+            "root_frame": self.root_frame_cm(method),
+            "centred_cm": self.centred_cm(method),
+            "limb_angles_deg": self.limb_angles_deg(method),
+            "work": self.work(method),
             "joint_angle_deg": self.angle_error_deg(method),
             "euler_angle_deg": None if eulers is None else float(eulers.mean()),
             "euler_angle_deviation_deg": None if eulers is None else float(eulers.std()),
@@ -265,7 +239,7 @@ class Evaluation:
             "class_errors_cm": self.class_errors_cm(method),
             "classes": {name: self.of_class(name).moving(method) for name in self.classes},
             "joint_errors_cm": self.joint_errors_cm(method),
-            "histogram": {"bin_cm": HISTOGRAM_BIN_CM, "frames": counts.tolist()},
+            "histogram": _histogram(self.frame_errors_cm(method)),
         }
 
     def as_dict(self) -> dict[str, Any]:
@@ -286,6 +260,11 @@ class Evaluation:
                     "frames": test.num_frames,
                     "excluded_clips": test.num_excluded,
                     "error_cm": {method: r.mean_cm for method, r in test.results.items()},
+                    "root_frame_cm": {
+                        method: float(r.root_frame_errors_cm.mean())
+                        for method, r in test.results.items()
+                        if r.root_frame_errors_cm is not None
+                    },
                     "euler_angle_deg": {
                         method: _list(r.euler_errors_deg) for method, r in test.results.items()
                     },
@@ -303,32 +282,6 @@ class Evaluation:
         }
 
 
-def clip_result(
-    errors_m: Floats,
-    frame_errors_m: Floats,
-    jerk_kmps3: float,
-    angle_errors_deg: Floats | None = None,
-    movement: Movement | None = None,
-    match: str | None = None,
-    euler_errors_deg: Floats | None = None,
-) -> ClipResult:
-    """Returns the result with errors in cm: of the joints (T, J) and of the frames (T,)."""
-    angles = None if angle_errors_deg is None else angle_errors_deg.mean(axis=0)
-    upper = CM * float(frame_errors(errors_m[:, UPPER_BODY]).mean())
-    lower = CM * float(frame_errors(errors_m[:, LOWER_BODY]).mean())
-    return ClipResult(
-        CM * frame_errors_m,
-        CM * errors_m.mean(axis=0),
-        jerk_kmps3,
-        angles,
-        movement,
-        match,
-        euler_errors_deg,
-        upper,
-        lower,
-    )
-
-
 def _figures(movement: Movement | None) -> dict[str, Any] | None:
     """Returns the figures of one test as JSON has them; None for NaN."""
     if movement is None:
@@ -340,6 +293,22 @@ def _figures(movement: Movement | None) -> dict[str, Any] | None:
         name: {str(s): _known(v) for s, v in value.items()} if name in drifts else _known(value)
         for name, value in figures.items()
     }
+
+
+def _spread(means_cm: Floats) -> dict[str, float]:
+    """Returns mean, median and 90th percentile of the clips' means."""
+    return {
+        "mean_cm": float(means_cm.mean()),
+        "median_cm": float(np.median(means_cm)),
+        "p90_cm": float(np.percentile(means_cm, 90)),
+    }
+
+
+def _histogram(errors_cm: Floats) -> dict[str, Any]:
+    """Returns how many frames lie in each bin of HISTOGRAM_BIN_CM."""
+    num_bins = int(errors_cm.max() / HISTOGRAM_BIN_CM) + 1
+    counts = np.histogram(errors_cm, num_bins, (0.0, num_bins * HISTOGRAM_BIN_CM))[0]
+    return {"bin_cm": HISTOGRAM_BIN_CM, "frames": counts.tolist()}
 
 
 def _list(values: Floats | None) -> list[float] | None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import asdict, dataclass
@@ -28,19 +29,23 @@ from ..readings import SensorInput, all_readings
 from ..reconstruction import reconstruct
 from ..report import match
 from ..table_errors import TableError
+from .clip_result import TestClip
 from .comparison import Estimate, Truth, world_of
 from .contender import Contender, contenders
 from .models import Trainer
 from .performance import PAPER_SITES, Performance, heading_rotations, performed
-from .protocol import choose_tests, excluded_clips, motion_files, source_path
-from .result import Evaluation, TestClip
+from .protocol import EVERYTHING, Content, choose_tests, excluded_clips, motion_files, source_path
+from .result import Evaluation
+from .same_motion import same_motion
 
-__all__ = ["Settings", "evaluate", "tested_clip"]
+__all__ = ["Settings", "evaluate", "reconstructions", "tested_clip"]
 
 Floats = NDArray[np.float64]
 Progress = Callable[[int, int, str], bool | None]
 
 WINDOW = 10
+WORK = ("components", "iterations")
+"""What methods may say of their own work, see ClipResult."""
 BASELINES = {
     "oracle": "the database's nearest pose to the truth",
     "playback": "the frame at the end of the best path",
@@ -60,6 +65,18 @@ class Settings:
     """A pattern on file names; None is one clip for each actor and class."""
     every: int = 1
     """Of the clips that would be tested, only every so many-th is."""
+    among: Content = EVERYTHING
+    """Which clips may be tested."""
+    per_class: int = 1
+    """How many clips of each actor and class are tested, without a pattern."""
+    known: Content = EVERYTHING
+    """Which clips the database has, before the scenario hides some."""
+    body_scale: float = 1.0
+    """The performers' size beside the recorded one."""
+    tempos: tuple[float, ...] = (1.0,)
+    """How fast the clips are performed, from beginning to end, linear between."""
+    with_baselines: bool = True
+    """Whether what every method is compared with is looked at as well."""
     pairs: tuple[tuple[str, str], ...] = ()
     """Patterns on the names of training and test clips, in place of a scenario's split."""
     sites: tuple[str, ...] = PAPER_SITES
@@ -99,6 +116,13 @@ def evaluate(
     return _Run(database, source, settings, progress).run(executor)
 
 
+def reconstructions(
+    database: MotionDatabase, source: Path, settings: Settings
+) -> Iterator[tuple[Clip, Performance, dict[str, Reconstruction]]]:
+    """Yields each test's clip, its performance, and what each contender makes of that, by label."""
+    return _Run(database, source, settings, None).reconstructions()
+
+
 def tested_clip(
     database: str, database_hash: str, source: str, settings: Settings, test: int, hidden: list[int]
 ) -> tuple[TestClip | None, dict[str, float | None], str]:
@@ -122,6 +146,7 @@ class _Run:
         self.files = motion_files(source)
         self.trainer = Trainer(self.clips, self.files)
         self.truths = database.array("positions").reshape(database.num_frames, -1, 3)
+        self.clip_begins = [clip.begin for clip in self.clips]
         self.evaluation = Evaluation(
             settings.scenario,
             asdict(settings)
@@ -178,15 +203,17 @@ class _Run:
         """Returns the clips to test, and for each those that the database must not have then."""
         settings = self.settings
         if not settings.pairs:
+            chosen = choose_tests(self.clips, settings.tests, settings.among, settings.per_class)
+            others = settings.known.rest(self.clips)
             return [
-                (test, excluded_clips(self.clips, test, settings.scenario))
-                for test in choose_tests(self.clips, settings.tests)[:: settings.every]
+                (test, sorted(others.union(self._excluded(test, settings.scenario))))
+                for test in chosen[:: settings.every]
             ]
         found = []
         for training, pattern in settings.pairs:
             known = set(choose_tests(self.clips, training))
             for test in choose_tests(self.clips, pattern):
-                hidden = set(excluded_clips(self.clips, test, 1))
+                hidden = set(self._excluded(test, 1))
                 others = set(range(len(self.clips))) - known
                 found.append((test, sorted(hidden | others)))
         return found
@@ -202,13 +229,10 @@ class _Run:
         clip = self.clips[index]
         if len(excluded) == len(self.clips):
             raise TableError(clip.source, 0, "is all that the scenario's database would hold")
-        performance = performed(
-            source_path(self.files, clip),
-            sites=self.settings.all_sites,
-            noise=self.settings.noise,
-            seed=self.settings.seed,
-        )
-        truth = Truth(self.database, clip, performance.motion_on(self.database))
+        performance = self._performed(clip)
+        motion = performance.motion_on(self.database)
+        clip_times_s = performance.clip_times_s(motion.num_frames, self.database.rate_hz)
+        truth = Truth(self.database, clip, motion, clip_times_s)
         test = TestClip(
             clip.name,
             clip.actor,
@@ -223,9 +247,32 @@ class _Run:
             self._estimate(one, performance, hidden if one.knows_all_clips else excluded)
             for one in self.contenders
         ]
-        for estimate in estimates + self._baselines(performance, truth.positions, excluded):
+        if self.settings.with_baselines:
+            estimates += self._baselines(performance, truth, excluded)
+        for estimate in estimates:
             test.results[estimate.label] = truth.compared(estimate)
         return test
+
+    def reconstructions(self) -> Iterator[tuple[Clip, Performance, dict[str, Reconstruction]]]:
+        for index, excluded in self._tests():
+            clip = self.clips[index]
+            performance = self._performed(clip)
+            yield (
+                clip,
+                performance,
+                {one.label: self._solved(one, performance, excluded) for one in self.contenders},
+            )
+
+    def _performed(self, clip: Clip) -> Performance:
+        settings = self.settings
+        return performed(
+            source_path(self.files, clip),
+            sites=settings.all_sites,
+            noise=settings.noise,
+            seed=settings.seed,
+            body_scale=settings.body_scale,
+            tempos=settings.tempos,
+        )
 
     def _hidden_from_all(self, test: int, excluded: Sequence[int]) -> list[int]:
         """Returns what is hidden from a contender that knows all clips but the tests.
@@ -236,7 +283,13 @@ class _Run:
         is_known = any(
             clip.actor == actor for index, clip in enumerate(self.clips) if index not in hidden
         )
-        return excluded_clips(self.clips, test, 1 if is_known else 3)
+        return self._excluded(test, 1 if is_known else 3)
+
+    def _excluded(self, test: int, scenario: int) -> list[int]:
+        """Returns the clips that a scenario hides, and all that show the test's movement."""
+        clip = self.clips[test]
+        same = same_motion(self.database).sources_with(clip.begin, clip.end)
+        return excluded_clips(self.clips, test, scenario, same)
 
     def _estimate(
         self, contender: Contender, performance: Performance, excluded: Sequence[int]
@@ -249,11 +302,17 @@ class _Run:
             contender.label,
             np.asarray(solved.readings.times_s),
             np.asarray(motion.joint_positions("heading")),
+            np.asarray(motion.joint_positions("root")),
             heading_rotations(motion),
             world_of(motion),
             match=match(solved, self.database)
             if "sensor_misfit_mps2" in solved.diagnostics
             else None,
+            work={
+                name: float(np.mean(solved.diagnostics[name]))
+                for name in WORK
+                if name in solved.diagnostics
+            },
         )
 
     def _solved(
@@ -274,16 +333,15 @@ class _Run:
         )
 
     def _baselines(
-        self, performance: Performance, truth: Floats, excluded: Sequence[int]
+        self, performance: Performance, truth: Truth, excluded: Sequence[int]
     ) -> list[Estimate]:
-        database = self.database
+        database, poses = self.database, truth.positions
         sites = self.settings.sites
         take = performance.seen(dict.fromkeys(sites, ("specific_force",)))
         inputs = [SensorInput(site, ["specific_force"]) for site in sites]
         readings = all_readings(take, inputs, database.rate_hz)
-        truth_times = np.arange(len(truth)) / database.rate_hz
         frames = (
-            (truth_times, nearest_poses(database, truth, excluded)),
+            (truth.times_s, nearest_poses(database, poses, excluded)),
             (readings.times_s, playback_best_path(database, readings, excluded)),
             (readings.times_s, nearest_windows(database, readings, WINDOW, excluded)),
         )
@@ -293,11 +351,25 @@ class _Run:
                 name,
                 times,
                 np.asarray(self.truths[rows], float),
+                self._in_root_frame(rows),
                 angles_rad=np.asarray(angles[rows], float),
             )
             for name, (times, rows) in zip(BASELINES, frames, strict=False)
         ]
-        mean_pose = np.broadcast_to(truth.mean(axis=0), truth.shape)
-        found.append(Estimate("mean pose", truth_times, mean_pose))
+        held = (
+            np.broadcast_to(true.mean(axis=0), true.shape) for true in (poses, truth.root_positions)
+        )
+        found.append(Estimate("mean pose", truth.times_s, *held))
         self.latencies_ms |= dict.fromkeys(BASELINES)
+        return found
+
+    def _in_root_frame(self, rows: NDArray[np.int64]) -> Floats:
+        """Returns the positions (T, J, 3) of the database's frames in the root frame."""
+        clips = {bisect_right(self.clip_begins, row) - 1 for row in rows}
+        found = np.zeros((len(rows), self.truths.shape[1], 3))
+        for index in clips:
+            clip = self.clips[index]
+            is_there = (rows >= clip.begin) & (rows < clip.end)
+            positions = self.database.clip_motion(index).joint_positions("root")
+            found[is_there] = np.asarray(positions)[rows[is_there] - clip.begin]
         return found

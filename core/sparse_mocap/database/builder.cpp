@@ -51,7 +51,8 @@ FileLock locked(const fs::path& database, const Progress& progress) {
 
 // The copies to make: those at other tempos only as long as the database stays small.
 CopyOptions copies_of(const BuildOptions& options, double source_seconds, BuildReport& report) {
-  CopyOptions copies{options.rate_hz, options.add_mirrored, options.add_reversed, {}};
+  CopyOptions copies{
+      options.rate_hz, options.add_mirrored, options.add_reversed, {}, options.has_own_proportions};
   double frames = source_seconds * options.rate_hz;
   frames *= (options.add_mirrored ? 2.0 : 1.0) * (options.add_reversed ? 2.0 : 1.0);
   double with_copies = frames;
@@ -74,6 +75,7 @@ CopyOptions copies_in(const DatabaseContent& content, const fs::path& path) {
     copies.add_mirrored = info.at("mirror").get<bool>();
     copies.add_reversed = info.at("reverse").get<bool>();
     copies.tempos = info.at("tempo_copies").get<std::vector<double>>();
+    copies.has_own_proportions = info.value("own_proportions", false);
     check_copies(copies.rate_hz, copies.tempos);
   } catch (const json::exception&) {
     throw FormatError({path}, "does not say how it was built",
@@ -204,11 +206,13 @@ void keep_labels(const DatabaseContent& old, const Importer& importer, const Imp
 }
 
 json build_info(const CopyOptions& copies, const ImportOptions& options, std::size_t num_bodies) {
-  return {{"mirror", copies.add_mirrored},
-          {"reverse", copies.add_reversed},
-          {"tempo_copies", copies.tempos},
-          {"exclude", options.exclude},
-          {"bodies", num_bodies}};
+  json info{{"mirror", copies.add_mirrored},
+            {"reverse", copies.add_reversed},
+            {"tempo_copies", copies.tempos},
+            {"exclude", options.exclude},
+            {"bodies", num_bodies}};
+  if (copies.has_own_proportions) info["own_proportions"] = true;
+  return info;
 }
 
 }  // namespace

@@ -42,6 +42,9 @@ struct BuildOptions : ImportOptions {
   // make the database larger than max_frames_with_copies.
   std::vector<double> tempo_copies{0.8, 1.25};
   int max_frames_with_copies = 200'000;
+  // Whether the readings are those of each body's own proportions, not of the averaged ones that
+  // its poses are shown on (Tautges et al. 2011, figure 10a).
+  bool has_own_proportions = false;
 };
 
 struct SkippedFile {

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <filesystem>
 #include <new>
+#include <optional>
 #include <utility>
 
 #include "sparse_mocap/base/checksum.hpp"
@@ -59,42 +60,59 @@ SourceSkeleton described(const Skeleton& source, const SkeletonMapping& mapping)
   return skeleton;
 }
 
+// A movement on a database's skeleton, and on the body's own where its readings are taken there.
+struct Moves {
+  Motion standard;
+  std::optional<Motion> own;
+
+  template <typename Change>
+  Moves changed(const Change& change) const {
+    Moves other{change(standard), {}};
+    if (own) other.own = change(*own);
+    return other;
+  }
+};
+
 // Makes a file's clips: the motion itself and its copies.
 class ClipMaker {
  public:
   ClipMaker(const CopyOptions& copies, const std::stop_token& stop, ImportedFile& out)
       : copies_(copies), stop_(stop), out_(out) {}
 
-  void add_mirrored(Clip clip, const Motion& motion) {
-    add_reversed(clip, motion);
+  void add_mirrored(Clip clip, const Moves& moves) {
+    add_reversed(clip, moves);
     if (!copies_.add_mirrored) return;
     clip.is_mirrored = true;
     for (std::size_t left = 0, right = 3; left < 3; ++left, ++right)
       std::swap(clip.has_extremity[left], clip.has_extremity[right]);
-    add_reversed(clip, mirrored(motion, left_right_with_extremities()));
+    add_reversed(clip, moves.changed([](const Motion& motion) {
+      return mirrored(motion, left_right_with_extremities());
+    }));
   }
 
  private:
-  void add_reversed(Clip clip, const Motion& motion) {
-    add_tempos(clip, motion);
+  void add_reversed(Clip clip, const Moves& moves) {
+    add_tempos(clip, moves);
     if (!copies_.add_reversed) return;
     clip.is_reversed = true;
-    add_tempos(clip, reversed(motion));
+    add_tempos(clip, moves.changed([](const Motion& motion) { return reversed(motion); }));
   }
 
-  void add_tempos(Clip clip, const Motion& motion) {
-    add_copy(clip, motion);
+  void add_tempos(Clip clip, const Moves& moves) {
+    add_copy(clip, moves);
     for (const double tempo : copies_.tempos) {
       clip.tempo = tempo;
-      Motion copy = motion;
-      copy.frame_time_s /= tempo;
-      add_copy(clip, copy);
+      add_copy(clip, moves.changed([tempo](Motion copy) {
+        copy.frame_time_s /= tempo;
+        return copy;
+      }));
     }
   }
 
-  void add_copy(Clip clip, const Motion& motion) {
+  void add_copy(Clip clip, const Moves& moves) {
     stop_if_asked(stop_);
-    PackedRows rows = packed(database_rows(motion, copies_.rate_hz));
+    PackedRows rows = packed(
+        database_rows(moves.standard, copies_.rate_hz, moves.own ? *moves.own : moves.standard));
     if (rows.num_frames() < kFewestFrames) return;
     if (!out_.clips.empty()) clip.warnings.clear();
     out_.clip_rows.push_back(std::move(rows));
@@ -144,8 +162,11 @@ Outcome<ImportedFile> import_file(const ImportRequest& request, const std::stop_
     const SkeletonMapping mapping = map_as_chosen(read.motion, request.mapping);
     std::vector<std::string> texts = mapping.warnings;
     const Skeleton standard = with_extremities(make_standard_skeleton(request.bones));
-    const Motion motion = to_standard(read.motion, mapping, standard, &texts);
-    out.faults = check_clip(read.motion, mapping, motion);
+    Moves moves{to_standard(read.motion, mapping, standard, &texts), {}};
+    if (request.copies.has_own_proportions)
+      moves.own = to_standard(read.motion, mapping,
+                              with_extremities(make_standard_skeleton(mapping.bones)));
+    out.faults = check_clip(read.motion, mapping, moves.standard);
     for (const ClipFault& fault : out.faults)
       if (fault.is_refused || request.is_strict) throw FormatError({file.path}, fault.text);
     out.skeleton = described(read.motion.skeleton, mapping);
@@ -163,7 +184,7 @@ Outcome<ImportedFile> import_file(const ImportRequest& request, const std::stop_
       out.warnings.push_back(file.path.filename().string() + ": " + text);
       ++clip.warnings[kind_of_warning(text)];
     }
-    ClipMaker(request.copies, stop, out).add_mirrored(clip, motion);
+    ClipMaker(request.copies, stop, out).add_mirrored(clip, moves);
     if (out.clips.empty() || out.clips.front().is_copy())
       throw FormatError({file.path}, "is too short for the database's frame rate");
     return out;

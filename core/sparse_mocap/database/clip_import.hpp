@@ -49,6 +49,7 @@ struct CopyOptions {
   bool add_mirrored = false;
   bool add_reversed = false;
   std::vector<double> tempos;
+  bool has_own_proportions = false;  // readings are of each body's own, not the averaged ones
 };
 
 // What is asked about a file before a database's skeleton is known.

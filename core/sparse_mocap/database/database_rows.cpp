@@ -92,6 +92,11 @@ DatabaseRows::Rows extremity_rows(const Motion& motion) {
 }  // namespace
 
 DatabaseRows database_rows(const Motion& standard_motion, double rate_hz) {
+  return database_rows(standard_motion, rate_hz, standard_motion);
+}
+
+DatabaseRows database_rows(const Motion& standard_motion, double rate_hz,
+                           const Motion& worn_motion) {
   Motion motion = resampled(standard_motion, rate_hz);
   const auto yaw = headings(motion);
   DatabaseRows rows;
@@ -109,7 +114,7 @@ DatabaseRows database_rows(const Motion& standard_motion, double rate_hz) {
   }
   rows.angles = standard_angles(motion).transpose().cast<float>();
   rows.extremities = extremity_rows(motion);
-  fill_readings(standard_motion, wanted_s, rows);
+  fill_readings(worn_motion, wanted_s, rows);
   return rows;
 }
 

@@ -20,5 +20,9 @@ struct DatabaseRows {
 // The rows of one clip: the motion, on a standard skeleton (with extremities or without) at its own
 // rate, sampled at rate_hz.
 DatabaseRows database_rows(const Motion& standard_motion, double rate_hz);
+// The same with the readings of sensors on a body of other proportions that moves alike:
+// worn_motion has the frames of standard_motion.
+DatabaseRows database_rows(const Motion& standard_motion, double rate_hz,
+                           const Motion& worn_motion);
 
 }  // namespace sparse_mocap

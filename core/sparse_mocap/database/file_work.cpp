@@ -100,7 +100,7 @@ ImportRequest import_from(const json& entry, const ReadOptions& own) {
   request.hashes = {entry.at("hash"), entry.at("skeleton_hash")};
   request.bones = bones_from(entry.at("bones"));
   request.copies = {entry.at("rate_hz"), entry.at("mirror"), entry.at("reverse"),
-                    entry.at("tempos").get<std::vector<double>>()};
+                    entry.at("tempos").get<std::vector<double>>(), entry.at("own_proportions")};
   request.is_strict = entry.at("strict");
   return request;
 }
@@ -245,6 +245,7 @@ std::string encoded(const ImportRequest& request) {
   message["mirror"] = request.copies.add_mirrored;
   message["reverse"] = request.copies.add_reversed;
   message["tempos"] = request.copies.tempos;
+  message["own_proportions"] = request.copies.has_own_proportions;
   message["strict"] = request.is_strict;
   return packed_message(message);
 }

@@ -2,6 +2,8 @@
 #include "sparse_mocap/methods/baselines.hpp"
 
 #include <algorithm>
+#include <ctime>
+#include <deque>
 
 #include "sparse_mocap/retrieval/features.hpp"
 #include "sparse_mocap/retrieval/knn_index.hpp"
@@ -16,6 +18,14 @@ using namespace retrieval;
 namespace {
 
 constexpr int kPlaybackNeighbours = 4096;
+
+// What work takes of the process's processor time.
+template <typename Work>
+double processor_seconds(const Work& work) {
+  const std::clock_t begin = std::clock();
+  work();
+  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+}
 
 // The features of a take and of a database, alike, and the search over the latter.
 class WindowSearch {
@@ -100,6 +110,31 @@ std::vector<int> nearest_poses(const MotionDatabase& database, const Eigen::Matr
     frames.push_back(best);
   }
   return frames;
+}
+
+GraphTimes graph_times(const MotionDatabase& database, const std::vector<Sensor>& sensors,
+                       const std::vector<Reading>& take, int window,
+                       const std::vector<int>& excluded_clips) {
+  const WindowSearch search(database, sensors, take, {}, excluded_clips);
+  const OlngConfig config{1.0, 1.0, window, true};
+  OnlineLazyNeighbourhoodGraph online(clips_of_frames(database), config);
+  OnlineLazyNeighbourhoodGraph anew = online;
+  std::deque<std::vector<Neighbour>> columns;
+  GraphTimes times;
+  for (std::size_t t = 0; t < take.size(); ++t) {
+    columns.emplace_back();
+    search.search(static_cast<Eigen::Index>(t), kPlaybackNeighbours, columns.back());
+    if (columns.size() > static_cast<std::size_t>(window)) columns.pop_front();
+    times.online_s += processor_seconds([&] { online.extend(columns.back()); });
+    times.anew_s += processor_seconds([&] {
+      anew.reset();
+      for (const auto& column : columns) anew.extend(column);
+    });
+    if (best_paths(online.paths(), 1).front().frame == best_paths(anew.paths(), 1).front().frame)
+      times.same += 1.0;
+  }
+  const auto count = static_cast<double>(take.size());
+  return {times.online_s / count, times.anew_s / count, times.same / count};
 }
 
 }  // namespace sparse_mocap

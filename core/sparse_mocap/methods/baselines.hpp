@@ -30,4 +30,15 @@ std::vector<int> nearest_windows(const MotionDatabase& database, const std::vect
 std::vector<int> nearest_poses(const MotionDatabase& database, const Eigen::MatrixXd& positions,
                                const std::vector<int>& excluded_clips);
 
+// What the paths of a take cost by the online graph, and by one that is made anew for each reading
+// from the last `window` of them, as before Tautges et al. 2011 (section 4; K = 4096, raw
+// readings).
+struct GraphTimes {
+  double online_s = 0.0, anew_s = 0.0;  // a reading, processor time of the graphs alone
+  double same = 0.0;                    // share of the readings with the same best path's end
+};
+GraphTimes graph_times(const MotionDatabase& database, const std::vector<Sensor>& sensors,
+                       const std::vector<Reading>& take, int window,
+                       const std::vector<int>& excluded_clips);
+
 }  // namespace sparse_mocap

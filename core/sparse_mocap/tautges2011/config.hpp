@@ -16,6 +16,12 @@ enum class PriorModel {
   normal,       // (c) a normal distribution of poses and an ad-hoc smoothness, as Chai and Hodgins
 };
 
+// How a pose is made from the retrieved ones.
+enum class PoseSource {
+  energy,  // the paper's: the minimum of equation (2)
+  mean,    // their weighted mean alone: what the energy is worth
+};
+
 // What the paper leaves open or states as a number.
 struct Config {
   int num_neighbours = 4096;    // K, section 6.3
@@ -24,6 +30,7 @@ struct Config {
   double penalty = 1.0;         // of an unmatched reading, in distances of its farthest neighbour
   bool is_time_warping = true;  // figure 13
   PriorModel prior = PriorModel::kernel;
+  PoseSource pose = PoseSource::energy;
 
   // Section 5.3.
   double w_contr = 1.0;

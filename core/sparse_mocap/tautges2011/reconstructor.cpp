@@ -7,7 +7,6 @@
 #include "sparse_mocap/motion/heading.hpp"
 #include "sparse_mocap/retrieval/diagnostics.hpp"
 #include "sparse_mocap/retrieval/extremity_vote.hpp"
-#include "sparse_mocap/retrieval/pose_minimizer.hpp"
 #include "sparse_mocap/tautges2011/control.hpp"
 
 namespace sparse_mocap::tautges2011 {
@@ -47,21 +46,28 @@ bool Reconstructor::step_into(const Reading& reading, PoseEstimate& estimate) {
   put_best_paths(graph_.paths(), config_.num_paths, neighbours_.paths);
   put_linear_weights(neighbours_.paths, neighbours_.weights);
   put_poses(*database_, past_ ? &past_->angles : nullptr, neighbours_);
-  put_path_derivatives(*database_, neighbours_.paths, derivatives_);
-  // Sections 5.1 and 5.2: the energy, equations (2) to (11).
-  energy_.weights() = neighbours_.weights;
-  energy_model_->put_terms({neighbours_, derivatives_, past_, signals_, database_->frame_time_s()},
-                           energy_.terms());
+  if (config_.pose == PoseSource::energy) put_energy();
   // Section 5.3: q_best in the local linear model of the poses.
   put_weighted_pca(neighbours_.angles, neighbours_.weights, config_.pca_variance, subspace_);
-  remember(reading, best_pose());
+  const Minimum best = best_pose();
+  remember(reading, best.angles);
   // Section 6.4: the root moves as the retrieved motions do in the mean.
   put_pose(reading.time_s, root_rates(*database_, neighbours_), estimate);
   follower_.apply(estimate);
   estimate.extremities = extremity_vote(*database_, neighbours_);
   put_retrieval_diagnostics(*database_, neighbours_, signals_, signal_rows_, alpha_,
                             estimate.diagnostics);
+  estimate.diagnostics["components"].setConstant(1, static_cast<double>(subspace_.basis.cols()));
+  estimate.diagnostics["iterations"].setConstant(1, best.iterations);
   return true;
+}
+
+// Sections 5.1 and 5.2: the energy, equations (2) to (11).
+void Reconstructor::put_energy() {
+  put_path_derivatives(*database_, neighbours_.paths, derivatives_);
+  energy_.weights() = neighbours_.weights;
+  energy_model_->put_terms({neighbours_, derivatives_, past_, signals_, database_->frame_time_s()},
+                           energy_.terms());
 }
 
 std::vector<PoseEstimate> Reconstructor::flush() {
@@ -77,12 +83,13 @@ void Reconstructor::reset() {
 }
 
 // From the previous pose; in the first frame from the mean or the best path's pose.
-PoseVector Reconstructor::best_pose() const {
+Minimum Reconstructor::best_pose() const {
+  if (config_.pose == PoseSource::mean) return {subspace_.mean, 0.0, 0, true};
   const std::array<PoseVector, 2> first{subspace_.mean, neighbours_.angles.col(0)};
   const std::array<PoseVector, 1> next{past_ ? PoseVector(past_->angles) : PoseVector()};
   const auto starts =
       past_ ? std::span<const PoseVector>(next) : std::span<const PoseVector>(first);
-  return minimize(energy_, subspace_, starts, config_.max_iterations).angles;
+  return minimize(energy_, subspace_, starts, config_.max_iterations);
 }
 
 void Reconstructor::remember(const Reading& reading, const PoseVector& angles) {

@@ -9,6 +9,7 @@
 #include "sparse_mocap/reconstruction/pose_follower.hpp"
 #include "sparse_mocap/retrieval/knn_index.hpp"
 #include "sparse_mocap/retrieval/olng.hpp"
+#include "sparse_mocap/retrieval/pose_minimizer.hpp"
 #include "sparse_mocap/retrieval/root_motion.hpp"
 #include "sparse_mocap/retrieval/signals.hpp"
 #include "sparse_mocap/tautges2011/config.hpp"
@@ -36,7 +37,8 @@ class Reconstructor : public LiveMethod {
   void reset() override;
 
  private:
-  retrieval::PoseVector best_pose() const;
+  void put_energy();
+  retrieval::Minimum best_pose() const;
   void remember(const Reading& reading, const retrieval::PoseVector& angles);
   void put_pose(double time_s, const retrieval::RootRates& rates, PoseEstimate& estimate);
 
