@@ -78,7 +78,7 @@ def difference(found: Found, label: str, other: str) -> tuple[float, float]:
 def told_difference(found: Found, label: str, other: str) -> str:
     """Returns that difference as tables have it."""
     off, half = difference(found, label, other)
-    return f"{off:+.2f} ± {half:.2f}"
+    return f"{off:+.2f}" if np.isnan(half) else f"{off:+.2f} ± {half:.2f}"
 
 
 def by_actor(found: Found, label: str, actors: Sequence[str]) -> list[float]:

@@ -150,12 +150,12 @@ def _verdict(found: dict[int, Found], name: str) -> str:
     told = []
     for scenario, of_scenario in found.items():
         off, half = difference(of_scenario, name, PAPER.label)
-        word = (
-            "no difference that can be told"
-            if abs(off) <= half
-            else ("the whole method is better" if off > 0 else "the whole method is worse")
-        )
-        told.append(f"scenario {scenario}: {word} ({off:+.2f} ± {half:.2f} cm)")
+        if np.isnan(half) or abs(off) <= half:
+            word = "no difference that can be told"
+        else:
+            word = f"the whole method is {'better' if off > 0 else 'worse'}"
+        shown = told_difference(of_scenario, name, PAPER.label)
+        told.append(f"scenario {scenario}: {word} ({shown} cm)")
     return f'Against "{name}": {"; ".join(told)}.'
 
 
