@@ -20,7 +20,8 @@ def scaled(motion: Motion, factor: float) -> Motion:
     if factor == 1.0:
         return motion
     skeleton = motion.skeleton
-    pivots, ends = [], []
+    pivots: list[Floats] = []
+    ends: list[Floats] = []
     for parent, offset, bone in zip(
         skeleton.parents, skeleton.offsets, skeleton.bones, strict=True
     ):
@@ -39,10 +40,12 @@ def at_tempos(motion: Motion, tempos: Sequence[float]) -> tuple[Motion, tuple[Fl
     if not tempos or min(tempos) <= 0.0:
         raise ValueError("tempos must be positive")
     step_s = motion.frame_time_s
-    clip_s = np.arange(motion.num_frames) * step_s
+    clip_s: Floats = np.arange(motion.num_frames, dtype=float) * step_s
     knots_s = np.linspace(0.0, clip_s[-1], len(tempos))
     slowness = 1.0 / np.interp(clip_s, knots_s, tempos)
-    done_s = np.concatenate([[0.0], np.cumsum(0.5 * (slowness[1:] + slowness[:-1]) * step_s)])
+    done_s: Floats = np.concatenate(
+        [[0.0], np.cumsum(0.5 * (slowness[1:] + slowness[:-1]) * step_s)]
+    )
     if len(tempos) == 1:
         faster = Motion(
             motion.skeleton, step_s / tempos[0], motion.root_positions, motion.rotations
@@ -61,7 +64,7 @@ def _continuous(rotations: Floats) -> Floats:
     turns = np.sum(rotations[1:] * rotations[:-1], axis=-1) < 0.0
     flips = np.cumsum(turns, axis=0) % 2 == 1
     signs = np.concatenate([np.ones((1, rotations.shape[1])), np.where(flips, -1.0, 1.0)])
-    return rotations * signs[..., None]
+    return np.asarray(rotations * signs[..., None])
 
 
 def _between(values: Floats, frames: Floats) -> Floats:

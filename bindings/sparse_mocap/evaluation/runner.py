@@ -356,10 +356,10 @@ class _Run:
             )
             for name, (times, rows) in zip(BASELINES, frames, strict=False)
         ]
-        held = (
+        in_heading, in_root = (
             np.broadcast_to(true.mean(axis=0), true.shape) for true in (poses, truth.root_positions)
         )
-        found.append(Estimate("mean pose", truth.times_s, *held))
+        found.append(Estimate("mean pose", truth.times_s, in_heading, in_root))
         self.latencies_ms |= dict.fromkeys(BASELINES)
         return found
 

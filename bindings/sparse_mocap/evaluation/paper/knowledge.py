@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -103,31 +103,31 @@ class _Row:
 
 
 def _rows(runs: Runs) -> list[_Row]:
-    mirrored = {"with_reversed": False}
-    own = runs.actors
+    own = Content(runs.actors, with_reversed=False)
     rows = []
     for classes, of in ((LOCOMOTION, "locomotion"), ((), "all classes")):
-        for actor in own:
-            one = Content((actor,), classes, **mirrored)
+        for actor in runs.actors:
+            one = replace(own, actors=(actor,), classes=classes)
             rows.append(_Row(f"{actor}, {of}, M", 1, one))
-        for copies, mark in (
-            ({"with_mirrored": False, "with_reversed": False}, ""),
-            (mirrored, ", M"),
-            ({}, ", M, R"),
+        for is_mirrored, is_reversed, mark in (
+            (False, False, ""),
+            (True, False, ", M"),
+            (True, True, ", M, R"),
         ):
-            for scenario in (1, 3):
-                rows.append(_Row(f"all, {of}{mark}", scenario, Content(own, classes, **copies)))
+            everyone = Content(runs.actors, classes, is_mirrored, is_reversed)
+            rows += [_Row(f"all, {of}{mark}", scenario, everyone) for scenario in (1, 3)]
     for every, part in ((4, "quarter"), (2, "half")):
-        for scenario in (1, 3):
-            few = Content(own, every=every, **mirrored)
-            rows.append(_Row(f"all, {part} of the files, M", scenario, few))
+        few = replace(own, every=every)
+        rows += [_Row(f"all, {part} of the files, M", scenario, few) for scenario in (1, 3)]
     if runs.more is not None:
-        others = sorted({clip.actor for clip in runs.database("diverse").clips} - set(own))
+        there = {clip.actor for clip in runs.database("diverse").clips}
+        everything = replace(own, actors=())
         rows += [
-            _Row("all, all classes, and other recordings, M", scenario, Content(**mirrored))
+            _Row("all, all classes, and other recordings, M", scenario, everything)
             for scenario in (1, 3)
         ]
-        rows.append(_Row("other recordings alone, M", 3, Content(tuple(others), **mirrored)))
+        others = replace(own, actors=tuple(sorted(there - set(runs.actors))))
+        rows.append(_Row("other recordings alone, M", 3, others))
     return rows
 
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ... import graph_times
@@ -23,13 +25,13 @@ from .section import Bars, Lines, Section, Table
 __all__ = ["energy", "graph", "priors", "window"]
 
 WINDOWS = (1, 2, 4, 8, 16, 32, 64)
-WAYS = {
+WAYS: dict[str, dict[str, Any]] = {
     "energy, warping": {},
     "energy, no warping": {"is_time_warping": False},
     "plain mean, warping": {"pose": "mean"},
     "plain mean, no warping": {"pose": "mean", "is_time_warping": False},
 }
-PRIORS = {
+PRIORS: dict[str, dict[str, Any]] = {
     "kernel regression (the paper's)": {"prior": "kernel"},
     "Mahalanobis distance for every term": {"prior": "mahalanobis"},
     "normal distribution of poses, least acceleration (Chai and Hodgins)": {"prior": "normal"},
@@ -101,7 +103,7 @@ def priors(runs: Runs) -> Section:
     return section
 
 
-ABLATIONS = {
+ABLATIONS: dict[str, dict[str, Any]] = {
     "nearest frame alone": {"num_neighbours": 1, "num_paths": 1, "window_readings": 1,
                             "pose": "mean"},
     "plain mean of nearest frames (M = 1, no energy)": {"window_readings": 1, "pose": "mean"},

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -36,7 +37,11 @@ def draw(plot: Plot, path: Path) -> Path:
 def _lines(plot: Lines) -> Figure:
     figure, axes = _figure(8.0, 4.2)
     for k, (label, (x, y)) in enumerate(plot.curves.items()):
-        style = {"color": _COLOURS[k % len(_COLOURS)], "linewidth": 1.6, "label": _plain(label)}
+        style: dict[str, Any] = {
+            "color": _COLOURS[k % len(_COLOURS)],
+            "linewidth": 1.6,
+            "label": _plain(label),
+        }
         if plot.has_steps:
             axes.step(x, y, where="post", **style)
         else:

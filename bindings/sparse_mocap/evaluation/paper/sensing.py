@@ -120,20 +120,19 @@ def noise(runs: Runs) -> Section:
     order = np.argsort([test["root_frame_cm"][PAPER.label] for test in found["none"]["tests"]])
     curves = {}
     for model in models:
-        errors = np.array([t["root_frame_cm"][PAPER.label] for t in found[model]["tests"]])
-        curves[model] = (list(range(1, len(clips) + 1)), errors[order].tolist())
+        of_clips = np.array([t["root_frame_cm"][PAPER.label] for t in found[model]["tests"]])
+        curves[model] = (list(range(1, len(clips) + 1)), of_clips[order].tolist())
     section.plots["fig06"] = Lines(
         f"{PAPER.label}: noise of the sensors",
         "clips, by their error without noise",
         "error, root frame (cm)",
         curves,
     )
-    one, other = (np.array(curves[model][1]) for model in ("none", "consumer"))
     section.findings = [
         f"{row[0]}: consumer noise adds {row[-1]} %, research noise {row[-2]} %." for row in rows
     ]
     if len(clips) > _FEWEST_TO_CORRELATE:
-        correlation = np.corrcoef(one, other)[0, 1]
+        correlation = np.corrcoef(curves["none"][1], curves["consumer"][1])[0, 1]
         section.findings.append(
             f"Clips without and with consumer noise correlate by {correlation:.2f}."
         )
