@@ -34,7 +34,8 @@ def test_every_part_is_written_and_drawn(
     assert result.exit_code == 0, result.output
     text = (tmp_path / "PAPER.md").read_text(encoding="utf-8")
     assert text.count("\n## ") == 1 + len(PARTS)
-    assert "**From a part of the clips alone: every 8th test.**" in text
+    assert "**Every 8th of the clips alone, where a part does not say more.**" in text
+    assert "(1 clip tested.)" in text
     assert "nan" not in text
     pictures = set(re.findall(r"!\[.*\]\((.*)\)", text))
     assert len(pictures) > 8
@@ -58,6 +59,16 @@ def test_what_is_done_is_not_done_again(
     assert Runs(library, kept).evaluation(settings) == first
     with pytest.raises(AssertionError, match="again"):
         Runs(library, kept).evaluation(plain(3, PAPER, tests="bruno_walk_01.bvh"))
+
+
+def test_an_evaluation_of_all_clips_takes_the_place_of_one_of_some(
+    library: Path, kept: Path
+) -> None:
+    settings = plain(1, PAPER, tests="ada_*_01.bvh")
+    assert len(Runs(library, kept, every=2).evaluation(settings)["tests"]) == 2
+    everything = Runs(library, kept).evaluation(settings)
+    assert len(everything["tests"]) == 4
+    assert Runs(library, kept, every=2).evaluation(settings) == everything
 
 
 def test_a_run_that_is_ended_keeps_what_it_has(library: Path, kept: Path) -> None:

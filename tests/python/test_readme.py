@@ -29,6 +29,7 @@ WORDS_BEFORE = {"cli": 2, "evaluate": 1}
 NOT_RUN = {
     "./dev demo": "renders for minutes; its steps have tests of their own",
     "./dev test": "is what runs this",
+    "./dev evaluate --paper": "runs for many minutes; test_paper_evaluation.py runs it",
     "./dev accuracy hdm05/": "writes a file of the repository; test_accuracy_table.py runs it",
 }
 NOT_COMMANDS = {

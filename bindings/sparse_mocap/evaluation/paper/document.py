@@ -33,7 +33,8 @@ beside each table, in our words.
   gives them. {eased}: the same, shown with a short lag so that poses do not jump.
 - A test's own clip is never in its database, nor its mirror image, its reversal, a copy, or a
   longer take that contains it: these are found by their poses, not by their names.
-- Live figures state their latency, of the filter of the readings and of the method.
+- Latency, of the filter of the readings and of the method, is in the tables of the three scenarios;
+  a method has the same in all others.
 """
 
 
@@ -77,11 +78,20 @@ def _setting(runs: Runs, date: str) -> list[str]:
         more = {clip.source for clip in runs.database("diverse").clips} - files
         lines[0] += f" Further recordings for figure 8: `{runs.more.name}`, {len(more)} clips."
     if runs.every > 1:
-        lines.append(f"**From a part of the clips alone: every {_ordinal(runs.every)} test.**")
+        lines.append(
+            f"**Every {_ordinal(runs.every)} of the clips alone, where a part does not say more.**"
+        )
     lines.append(
         f"Simulated accelerometers at wrists and ankles unless said. {__version__}, {date}."
     )
     return lines
+
+
+def _clips(counts: Sequence[int]) -> str:
+    if not counts:
+        return ""
+    several = f"{counts[0]} to {counts[-1]}" if len(counts) > 1 else f"{counts[0]}"
+    return f"({several} clip{'' if counts == [1] else 's'} tested.)"
 
 
 def _ordinal(number: int) -> str:
@@ -90,7 +100,7 @@ def _ordinal(number: int) -> str:
 
 def _told(section: Section) -> list[str]:
     lines = [f"## {section.title}", "", f"*The paper:* {section.paper}", ""]
-    lines += [f"*Here:* {section.method}", ""]
+    lines += [f"*Here:* {section.method} {_clips(section.num_clips)}".rstrip(), ""]
     for table in section.tables:
         lines += [f"{table.caption}:", "", *_rows(table), ""]
     for name, plot in section.plots.items():

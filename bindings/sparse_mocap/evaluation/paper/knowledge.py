@@ -62,6 +62,12 @@ def scenarios(runs: Runs) -> Section:
             f"{label}: {one:.1f}, {two:.1f} and {three:.1f} cm in scenarios 1, 2 and 3;"
             f" an unknown performer costs {100 * (three / one - 1):.0f} %."
         )
+    late = {label: told["latency_ms"] for label, told in found[1]["methods"].items()}
+    section.findings.append(
+        "Latency: "
+        + ", ".join(f"{label} {ms:.0f} ms" for label, ms in late.items() if ms is not None)
+        + "; `path_regression`, best, needs the whole take."
+    )
     return section
 
 

@@ -31,4 +31,7 @@ def run_part(runs: Runs, name: str) -> Section:
     """Returns what a part found; what it had found before is not run again. Raises Cancelled."""
     names = list(PARTS)
     runs.part = (names.index(name), len(names), name)
-    return PARTS[name](runs)
+    runs.num_clips.clear()
+    section = PARTS[name](runs)
+    section.num_clips = sorted(runs.num_clips)
+    return section

@@ -50,13 +50,18 @@ class Runs:
         progress: Progress | None = None,
         executor: Executor | None = None,
     ) -> None:
-        """more: further motion for the diverse database; every: tests each every-th clip alone."""
+        """more: further motion for the diverse database.
+
+        every: tests each every-th clip alone, unless the evaluation of all clips is there.
+        """
         self.source, self.more, self.kept, self.every = source, more, kept, every
         self._progress, self._executor = progress, executor
         self._databases: dict[str, MotionDatabase] = {}
         self._actors: tuple[str, ...] = ()
         self.part = (0, 1, "")
         """How many parts are done, of how many, and the one that is running."""
+        self.num_clips: set[int] = set()
+        """How many clips the evaluations of that part test."""
         (kept / "runs").mkdir(parents=True, exist_ok=True)
 
     def database(self, name: str = "plain") -> MotionDatabase:
@@ -81,13 +86,16 @@ class Runs:
 
         Raises Cancelled; what was found until then is kept.
         """
-        settings = self._sampled(settings)
         opened = self.database(database)
-        path = self.kept / "runs" / f"{self._key(opened, settings)}.json"
+        path = self._path(opened, settings)
+        if not path.exists():
+            settings = self._sampled(settings)
+            path = self._path(opened, settings)
         if not path.exists():
             found = evaluate(opened, self.source, settings, self._report, self._executor)
             write_text(path, json.dumps(_figures(found), allow_nan=False))
         told: Found = json.loads(path.read_text(encoding="utf-8"))
+        self.num_clips.add(len(told["tests"]))
         return told
 
     def reconstructions(
@@ -122,15 +130,16 @@ class Runs:
     def _sampled(self, settings: Settings) -> Settings:
         return replace(settings, every=settings.every * self.every)
 
-    def _key(self, database: MotionDatabase, settings: Settings) -> str:
-        """Returns what tells an evaluation from all others, by data, settings and package."""
+    def _path(self, database: MotionDatabase, settings: Settings) -> Path:
+        """Returns the file of an evaluation, named by its data, its settings and this package."""
         about: Sequence[Any] = [
             _KEPT_VERSION,
             database.rows_hash,
             fingerprint([self.source]),
             asdict(settings),
         ]
-        return hashlib.sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()[:16]
+        key = hashlib.sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()[:16]
+        return self.kept / "runs" / f"{key}.json"
 
     def _report(self, done: int, total: int, what: str) -> bool | None:
         if self._progress is None:

@@ -67,3 +67,5 @@ class Section:
     tables: list[Table] = field(default_factory=list)
     plots: dict[str, Plot] = field(default_factory=dict)
     """By the names of their files."""
+    num_clips: list[int] = field(default_factory=list)
+    """How many clips its evaluations test, sorted."""
