@@ -28,7 +28,7 @@ __all__ = ["content", "histogram", "proportions", "scenarios"]
 
 LOCOMOTION = ("walk*", "run*", "jog*", "sneak*", "hop*")
 UNSCALED = variant("`tautges2011`, K = 4096 and I = 256", scales_with_database=False)
-SCALES = tuple(round(0.5 + 0.1 * step, 1) for step in range(11))
+SCALES = (0.5, 0.6, 0.8, 1.0, 1.2, 1.4, 1.5)
 
 
 def scenarios(runs: Runs) -> Section:

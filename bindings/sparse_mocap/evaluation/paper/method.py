@@ -144,6 +144,15 @@ def energy(runs: Runs) -> Section:
         section.findings.append(_verdict(found, name))
     section.findings.append(_verdict(found, "energy without warping"))
     section.findings.append(_verdict(found, "energy, M = 1"))
+    means = ("plain mean of paths, M = 20", "plain mean of nearest frames (M = 1, no energy)")
+    energy_jerk, *mean_jerks = (
+        found[1]["methods"][label]["jerk_kmps3"] for label in (PAPER.label, *means)
+    )
+    told = " and ".join(f"{jerk:.2f}" for jerk in mean_jerks)
+    section.findings.append(
+        f"Smoothness: jerk in scenario 1 is {energy_jerk:.2f} km/s³ with the energy, {told} for the"
+        " plain means of paths and of nearest frames."
+    )
     return section
 
 

@@ -52,12 +52,13 @@ class Runs:
     ) -> None:
         """more: further motion for the diverse database.
 
-        every: tests each every-th clip alone, unless the evaluation of all clips is there.
+        every: tests each every-th clip alone, unless an evaluation of more clips is there.
         """
         self.source, self.more, self.kept, self.every = source, more, kept, every
         self._progress, self._executor = progress, executor
         self._databases: dict[str, MotionDatabase] = {}
         self._actors: tuple[str, ...] = ()
+        self._files = fingerprint([source])
         self.part = (0, 1, "")
         """How many parts are done, of how many, and the one that is running."""
         self.num_clips: set[int] = set()
@@ -87,10 +88,10 @@ class Runs:
         Raises Cancelled; what was found until then is kept.
         """
         opened = self.database(database)
-        path = self._path(opened, settings)
-        if not path.exists():
-            settings = self._sampled(settings)
-            path = self._path(opened, settings)
+        samples = [self._sampled(settings, every) for every in range(1, self.every + 1)]
+        paths = [self._path(opened, sample) for sample in samples]
+        path = next((path for path in paths if path.exists()), paths[-1])
+        settings = samples[-1]
         if not path.exists():
             found = evaluate(opened, self.source, settings, self._report, self._executor)
             write_text(path, json.dumps(_figures(found), allow_nan=False))
@@ -102,7 +103,8 @@ class Runs:
         self, settings: Settings
     ) -> Iterator[tuple[Clip, Performance, dict[str, Reconstruction]]]:
         """Yields reconstructions with the plain database; these are not kept."""
-        found = reconstructions(self.database(), self.source, self._sampled(settings))
+        sample = self._sampled(settings, self.every)
+        found = reconstructions(self.database(), self.source, sample)
         for number, (clip, performance, solved) in enumerate(found):
             self._report(number, 0, clip.name)
             yield clip, performance, solved
@@ -127,15 +129,16 @@ class Runs:
         frames = sum(clip.end - clip.begin for clip in opened.clips if not is_copy(clip))
         return frames / opened.rate_hz
 
-    def _sampled(self, settings: Settings) -> Settings:
-        return replace(settings, every=settings.every * self.every)
+    @staticmethod
+    def _sampled(settings: Settings, every: int) -> Settings:
+        return replace(settings, every=settings.every * every)
 
     def _path(self, database: MotionDatabase, settings: Settings) -> Path:
         """Returns the file of an evaluation, named by its data, its settings and this package."""
         about: Sequence[Any] = [
             _KEPT_VERSION,
             database.rows_hash,
-            fingerprint([self.source]),
+            self._files,
             asdict(settings),
         ]
         key = hashlib.sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()[:16]
