@@ -47,20 +47,17 @@ def build_database(
 ) -> _core.BuildReport:
     """Builds a database from motion files and folders of them, and tells what came of it.
 
-    rate_hz: frames a second of the database; mirror, reverse: whether each clip is added mirrored
-    and played backwards too; tempo_copies: tempos at which a small database holds each clip once
-    more; own_proportions: readings are simulated on each body's own proportions, not on the
-    averaged ones that its poses are shown on (Tautges et al. 2011, figure 10a); exclude: glob
-    patterns of file names to leave out; metadata: a table of labels file,actor,class,source,license
-    (None: metadata.csv of the source folders); workers: who reads the files in place of this
-    process (see workers.cluster), who must find them at the same paths; the database is the same.
+    rate_hz: frames a second; mirror, reverse: whether clips are added mirrored and backwards too;
+    tempo_copies: tempos at which a small database holds each clip once more; own_proportions:
+    readings are of each body's own, not the averaged ones; exclude: patterns of file names;
+    metadata: a table file,actor,class,source,license (None: the folders' metadata.csv); workers:
+    who reads the files (see workers.cluster), at the same paths; the database is the same.
 
-    Further options: strict stops at the first file that cannot be used or whose motion is doubtful
-    (check_clip in the core has the limits); read: what the files do not say (see read_options);
-    keep_duplicates also takes files whose motion is there already; num_threads (0: one a processor;
-    the file is the same); by_hand: joints for skeletons that have them all; mappings: a folder of
-    mappings by hand for others; progress(done, total, what) may return False to cancel; details
-    gets each ProgressReport before progress is called.
+    Further options: strict stops at the first file that cannot be used or is doubtful (check_clip
+    in the core has the limits); read: see read_options; keep_duplicates also takes files whose
+    motion is there; num_threads (0: one a processor; the file is the same); by_hand: joints for
+    skeletons that have them all; mappings: a folder of mappings by hand for others;
+    progress(done, total, what) may return False to cancel; details gets each ProgressReport before.
 
     Raises FormatError (nothing usable, or strict), ConfigError, Cancelled and OSError; output is
     untouched then.

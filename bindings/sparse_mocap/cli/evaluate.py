@@ -105,7 +105,7 @@ def _simulation_options(command: Callable[..., Any]) -> Callable[..., Any]:
 @click.option(
     "--paper", is_flag=True,
     help="Run all comparisons from the methods' papers. Without --scenario: all that "
-    "Tautges et al. 2011 evaluate, written as PAPER.md and plots; what is done is kept in --cache.",
+    "Tautges et al. 2011 evaluate, written as PAPER.md and plots; --cache keeps what is done.",
 )  # fmt: skip
 @paper_options
 @click.option(

@@ -39,8 +39,8 @@ def scenarios(runs: Runs) -> Section:
         "Three scenarios (table I)",
         "Errors are noticeably smaller when the database has motion of the performer (scenarios 1"
         " and 2); without it (scenario 3) they are still satisfying.",
-        "One clip for each performer and class. `tautges2011` takes K and I as the same share of"
-        " the database as the paper does; the row with K = 4096 and I = 256 has its numbers as they"
+        "One clip for each performer and class. `tautges2011` takes K and I in the paper's"
+        " proportion to the database; the row with K = 4096 and I = 256 has its numbers as they"
         " are. Below it what every method is compared with.",
     )
     labels = list(found[1]["methods"])
