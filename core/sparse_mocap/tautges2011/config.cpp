@@ -40,8 +40,9 @@ const OptionTable<Config>& options() {
                 "whether paths may run at half to double speed (figure 13)")
           .choice("prior", &Config::prior, {"kernel", "mahalanobis", "normal"},
                   "the prior models that figure 11 compares")
-          .choice("pose", &Config::pose, {"energy", "mean"},
-                  "how a pose is made: as the minimum of the energy, or as the paths' weighted mean")
+          .choice(
+              "pose", &Config::pose, {"energy", "mean"},
+              "how a pose is made: as the minimum of the energy, or as the paths' weighted mean")
           .number("w_contr", &Config::w_contr, 0.0, 1e6, "weight of the control term")
           .number("w_prior", &Config::w_prior, 1e-6, 1e6, "weight of the three priors together")
           .number("w_pose", &Config::w_pose, 1e-6, 1e6, "weight of the pose prior")
