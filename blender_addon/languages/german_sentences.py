@@ -139,5 +139,10 @@ SENTENCES = {
     "Hold still": "Stillhalten",
     "The last pose was {degrees} degrees off": "Die letzte Pose war {degrees} Grad daneben",
     "As in a mirror": "Wie im Spiegel",
+    "searching": "Ähnliche Bewegungen suchen",
+    "fitting": "Posen einpassen",
+    "smoothing": "Bewegung glätten",
+    "finding how the sensor is worn": "Sitz des Sensors suchen",
+    "placing the feet": "Füße aufsetzen",
     "From your right": "Von rechts gesehen",
 }

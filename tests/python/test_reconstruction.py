@@ -259,6 +259,22 @@ def test_a_solution_can_be_stopped(database: MotionDatabase, short: Take) -> Non
         reconstruct(short, database, progress=lambda *_: False)
 
 
+def test_best_quality_says_how_far_it_is_to_the_end_and_can_be_stopped_there(
+    database: MotionDatabase, short: Take
+) -> None:
+    fractions: list[float] = []
+
+    def follow(done: int, total: int, _: str) -> bool:
+        fractions.append(done / total)
+        return True
+
+    reconstruct(short, database, best_quality=True, progress=follow)
+    assert fractions == sorted(fractions)
+    assert fractions[-1] > 2 / 3  # while the take is fitted as a whole, too
+    with pytest.raises(Cancelled):
+        reconstruct(short, database, best_quality=True, progress=lambda *now: now[2] != "fitting")
+
+
 def test_other_threads_run_during_a_solution(database: MotionDatabase, take: Take) -> None:
     ticks: list[float] = []
     done = threading.Event()

@@ -25,8 +25,10 @@ void BandedSystem::damp(double damping) {
   }
 }
 
-bool BandedSystem::decompose() {
+bool BandedSystem::decompose(const std::function<void(int)>& reached) {
+  constexpr int kReportedEach = 32;
   for (int i = 0; i < num_blocks(); ++i) {
+    if (reached && i % kReportedEach == 0) reached(i);
     for (int j = std::max(0, i - kReach); j < i; ++j) {
       Eigen::MatrixXd& L = block(i, j);
       for (int k = std::max(0, i - kReach); k < j; ++k)
@@ -42,8 +44,8 @@ bool BandedSystem::decompose() {
   return true;
 }
 
-bool BandedSystem::solve(Eigen::MatrixXd& unknowns) {
-  if (!decompose()) return false;
+bool BandedSystem::solve(Eigen::MatrixXd& unknowns, const std::function<void(int)>& reached) {
+  if (!decompose(reached)) return false;
   const int n = num_blocks();
   unknowns.resize(block_size_, n);
   for (int i = 0; i < n; ++i) {

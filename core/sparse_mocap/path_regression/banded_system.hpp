@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 namespace sparse_mocap::path_regression {
@@ -27,11 +28,12 @@ class BandedSystem {
   // Adds to every diagonal entry: damping times itself, and a little more.
   void damp(double damping);
   // The unknowns, one column a block; decomposes in place, so that it can be called once. False
-  // where the system is not positive definite.
-  bool solve(Eigen::MatrixXd& unknowns);
+  // where the system is not positive definite. reached(i) is called at some blocks on the way; what
+  // it throws ends the work.
+  bool solve(Eigen::MatrixXd& unknowns, const std::function<void(int)>& reached = {});
 
  private:
-  bool decompose();
+  bool decompose(const std::function<void(int)>& reached);
 
   int block_size_ = 0;
   std::vector<Eigen::MatrixXd> blocks_;

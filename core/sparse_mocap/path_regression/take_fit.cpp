@@ -2,6 +2,7 @@
 #include "sparse_mocap/path_regression/take_fit.hpp"
 
 #include <Eigen/SVD>
+#include <functional>
 #include <utility>
 
 #include "sparse_mocap/motion/heading.hpp"
@@ -63,13 +64,20 @@ double TakeFit::value(const std::vector<FittedFrame>& frames, std::span<const Fr
 }
 
 double TakeFit::fit(std::vector<FittedFrame>& frames, std::span<const FrameTarget> targets,
-                    std::size_t first_free, int max_iterations) {
+                    std::size_t first_free, int max_iterations, const Progress& progress) {
+  const std::size_t num_free = frames.size() - first_free;
+  const auto num_iterations = static_cast<std::size_t>(max_iterations);
   double damping = kFirstDamping;
   double reached = value(frames, targets, first_free);
   for (int iteration = 0; iteration < max_iterations && damping < kMostDamping; ++iteration) {
     equations_->form(frames, targets, static_cast<int>(first_free), true);
     equations_->system().damp(damping);
-    if (!equations_->system().solve(steps_)) break;
+    const std::size_t done = static_cast<std::size_t>(iteration) * num_free;
+    const auto reached_frame = [&](int i) {
+      progress.report(done + static_cast<std::size_t>(i), num_iterations * num_free, "fitting");
+    };
+    // By reference, since live frames must not allocate.
+    if (!equations_->system().solve(steps_, std::cref(reached_frame))) break;
     next_ = frames;
     move(skeleton_, first_free, steps_, next_);
     const double value_there =

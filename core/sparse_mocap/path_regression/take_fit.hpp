@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "sparse_mocap/base/progress.hpp"
 #include "sparse_mocap/motion/joint_rotations.hpp"
 #include "sparse_mocap/path_regression/frame_target.hpp"
 #include "sparse_mocap/reconstruction/pose_estimate.hpp"
@@ -56,9 +57,10 @@ class TakeFit {
   ~TakeFit();
 
   // Fits frames [first_free, end) from where they are; those before stay. One target a frame.
-  // Gives the value that is reached, never more than at the start.
+  // Gives the value that is reached, never more than at the start. Throws Cancelled; the frames are
+  // then where the last step left them.
   double fit(std::vector<FittedFrame>& frames, std::span<const FrameTarget> targets,
-             std::size_t first_free, int max_iterations);
+             std::size_t first_free, int max_iterations, const Progress& progress = {});
   // The sum of all terms that depend on frames [first_free, end).
   double value(const std::vector<FittedFrame>& frames, std::span<const FrameTarget> targets,
                std::size_t first_free);

@@ -40,8 +40,9 @@ std::vector<Result> WholeTakeReconstructor::in_parallel(std::size_t count, const
 }
 
 // The whole take in one fit.
-std::vector<PoseEstimate> WholeTakeReconstructor::fitted(
-    const std::vector<Reading>& take, std::vector<RetrievedFrame> retrieved) const {
+std::vector<PoseEstimate> WholeTakeReconstructor::fitted(const std::vector<Reading>& take,
+                                                         std::vector<RetrievedFrame> retrieved,
+                                                         const Progress& progress) const {
   constexpr double kEvened_s = 0.08;
   std::vector<FittedFrame> frames;
   std::vector<FrameTarget> targets;
@@ -53,7 +54,7 @@ std::vector<PoseEstimate> WholeTakeReconstructor::fitted(
   even_agreements(targets, static_cast<std::size_t>(std::lround(kEvened_s * rate_hz())));
   const Config& config = solver_.config();
   TakeFit(skeleton(), 1.0 / rate_hz(), config.fit, num_threads_)
-      .fit(frames, targets, 0, config.max_iterations);
+      .fit(frames, targets, 0, config.max_iterations, progress);
   std::vector<PoseEstimate> estimates;
   for (std::size_t t = 0; t < frames.size(); ++t) {
     estimates.push_back(to_estimate(frames[t], take[t].time_s, targets[t].feet.certainty,
@@ -65,6 +66,7 @@ std::vector<PoseEstimate> WholeTakeReconstructor::fitted(
 
 std::vector<PoseEstimate> WholeTakeReconstructor::solve(const std::vector<Reading>& measured,
                                                         const Progress& progress) {
+  constexpr std::size_t kNumParts = 3;  // search, retrieval and fit take about as long
   for (const auto& reading : measured) require_sensors(reading, solver_.num_sensors());
   turning_.reset();
   std::vector<Reading> take;
@@ -75,7 +77,7 @@ std::vector<PoseEstimate> WholeTakeReconstructor::solve(const std::vector<Readin
   };
   using Neighbours = std::vector<retrieval::Neighbour>;
   std::vector<Neighbours> columns = in_parallel<Neighbours>(
-      take.size(), [&](std::size_t t) { progress.report(t, 2 * take.size(), "searching"); },
+      take.size(), [&](std::size_t t) { progress.report(t, kNumParts * take.size(), "searching"); },
       [&](std::size_t t) {
         Neighbours found;
         solver_.search(window(t), found);
@@ -88,13 +90,21 @@ std::vector<PoseEstimate> WholeTakeReconstructor::solve(const std::vector<Readin
   columns = {};
   auto retrieved = in_parallel<RetrievedFrame>(
       take.size(),
-      [&](std::size_t t) { progress.report(take.size() + t, 2 * take.size(), "reconstructing"); },
+      [&](std::size_t t) {
+        progress.report(take.size() + t, kNumParts * take.size(), "reconstructing");
+      },
       [&](std::size_t t) {
         RetrievedFrame frame;
         solver_.retrieve(paths.paths(t), window(t), take[t], frame);
         return frame;
       });
-  return fitted(take, std::move(retrieved));
+  const Progress fitting(
+      Progress::Callback([&](std::size_t done, std::size_t total, std::string_view what) {
+        const std::size_t share = take.size() * done / total;
+        progress.report(2 * take.size() + share, kNumParts * take.size(), what);
+        return true;
+      }));
+  return fitted(take, std::move(retrieved), fitting);
 }
 
 }  // namespace sparse_mocap::path_regression

@@ -25,7 +25,8 @@ class WholeTakeReconstructor : public WholeTakeMethod {
 
  private:
   std::vector<PoseEstimate> fitted(const std::vector<Reading>& take,
-                                   std::vector<RetrievedFrame> retrieved) const;
+                                   std::vector<RetrievedFrame> retrieved,
+                                   const Progress& progress) const;
 
   template <typename Result, typename Reached, typename Of>
   std::vector<Result> in_parallel(std::size_t count, const Reached& reached, const Of& of) const;

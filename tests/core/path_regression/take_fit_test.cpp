@@ -224,6 +224,32 @@ TEST(TakeFit, EndsWhereNoSmallStepGoesDown) {
   }
 }
 
+// A long take is fitted for minutes: how far that is must be seen, and it must end when asked to.
+TEST(TakeFit, SaysHowFarItIsAndEndsWhenAsked) {
+  Random random(5);
+  const Take start = random_take(random, 70, 0.2);
+  Take take = start, same = start, cancelled = start;
+  std::vector<std::size_t> done;
+  const Progress progress(
+      Progress::Callback([&](std::size_t reached, std::size_t total, std::string_view) {
+        EXPECT_LT(reached, total);
+        done.push_back(reached);
+        return true;
+      }));
+  const double value =
+      TakeFit(kSkeleton, kDt, all_weights()).fit(take.frames, take.targets, 0, 4, progress);
+  EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
+  EXPECT_GE(done.size(), 8U);  // more than once in each step
+  EXPECT_EQ(TakeFit(kSkeleton, kDt, all_weights()).fit(same.frames, same.targets, 0, 4), value);
+  std::size_t asked = 0;
+  const Progress twice(
+      Progress::Callback([&](std::size_t, std::size_t, std::string_view) { return ++asked < 2; }));
+  EXPECT_THROW(
+      TakeFit(kSkeleton, kDt, all_weights()).fit(cancelled.frames, cancelled.targets, 0, 4, twice),
+      Cancelled);
+  EXPECT_EQ(asked, 2U);
+}
+
 TEST(TakeFit, LeavesTheGivenFramesAlone) {
   Random random(4);
   Take take = random_take(random, 4, 0.2);
