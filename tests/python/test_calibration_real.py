@@ -12,10 +12,19 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.io import loadmat
+from recorded_body import (
+    LIMBS,
+    SCORED,
+    TRUNK,
+    angles_deg,
+    directions,
+    exceeds_human_limits,
+    recorded_sensors,
+    reference,
+    turns,
+)
 from scipy.spatial.transform import Rotation
 from sparse_mocap import (
-    Motion,
     MotionDatabase,
     SensorRecord,
     Take,
@@ -30,26 +39,13 @@ WORN = {
     "left_ankle": "lower_leg_left",
     "right_ankle": "lower_leg_right",
 }
-LIMBS = {
-    "upper_arm_left": ("lclavicle", "lhumerus"),
-    "forearm_left": ("lhumerus", "lradius"),
-    "upper_arm_right": ("rclavicle", "rhumerus"),
-    "forearm_right": ("rhumerus", "rradius"),
-    "upper_leg_left": ("lhipjoint", "lfemur"),
-    "lower_leg_left": ("lfemur", "ltibia"),
-    "upper_leg_right": ("rhipjoint", "rfemur"),
-    "lower_leg_right": ("rfemur", "rtibia"),
-}
-TRUNK = "upper_back"
 # The wearer stands for 4 s, then lifts both forearms; from 55 s on there is steady locomotion.
 STEPS = Steps((0.0, 4.0), (("bend_elbows", (4.5, 6.0)), ("walk", (55.0, 75.0))))
-SCORED = (55.0, 100.0)
 
 
 @pytest.fixture(scope="module")
 def recorded(real_data: Path) -> Any:
-    path = real_data / "imu" / "qmt_full_body" / "full_body_example_data.mat"
-    return loadmat(path, squeeze_me=True, struct_as_record=False)
+    return recorded_sensors(real_data)
 
 
 @pytest.fixture(scope="module")
@@ -63,31 +59,6 @@ def take(recorded: Any) -> Take:
 @pytest.fixture(scope="module")
 def calibration(take: Take) -> Calibration:
     return calibrate(take, STEPS)
-
-
-def turns(recorded: Any, name: str) -> Rotation:
-    return Rotation.from_quat(recorded[name].quat[:, [1, 2, 3, 0]])
-
-
-def reference(recorded: Any) -> np.ndarray:
-    """(T, 9, 3) limbs and trunk in the heading frame; segments have y upwards along the limb."""
-    right = turns(recorded, "hip").apply([0, 0, 1]) * [1, 1, 0]
-    left = -right / np.linalg.norm(right, axis=1, keepdims=True)
-    axes = np.stack([left, np.tile([0, 0, 1.0], (len(left), 1)), np.cross(left, [0, 0, 1])], 1)
-    limbs = [turns(recorded, name).apply([0, -1, 0]) for name in LIMBS]
-    limbs.append(turns(recorded, TRUNK).apply([0, 1, 0]))
-    return np.einsum("tij,ltj->tli", axes, np.array(limbs))
-
-
-def directions(motion: Motion) -> np.ndarray:
-    positions, names = motion.joint_positions("heading"), motion.skeleton.names
-    ends = [*LIMBS.values(), ("root", "thorax")]
-    limbs = [positions[:, names.index(b)] - positions[:, names.index(a)] for a, b in ends]
-    return np.stack([v / np.linalg.norm(v, axis=1, keepdims=True) for v in limbs], 1)
-
-
-def angles_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.degrees(np.arccos(np.clip((a * b).sum(axis=-1), -1, 1)))
 
 
 def test_boxes_turned_by_half_a_right_angle_are_found(
@@ -118,25 +89,6 @@ def since(take: Take, begin_s: float) -> Take:
             record.times_s[kept], record.specific_force[kept], record.angular_velocity[kept]
         )
     return Take(sensors)
-
-
-def exceeds_human_limits(motion: Motion) -> list[str]:
-    """Joints that turn by over 56 degrees within a frame, or bend as no knee or elbow does."""
-    names = list(motion.skeleton.names)
-    quaternions = np.asarray(motion.rotations)
-    found = []
-    for joint, name in enumerate(names):
-        turned = Rotation.from_quat(quaternions[:, joint][:, [1, 2, 3, 0]])
-        if np.degrees((turned[:-1].inv() * turned[1:]).magnitude()).max() > 56.1:
-            found.append(f"{name} turns too fast")
-        if name[1:] not in ("tibia", "radius"):
-            continue
-        vectors = np.degrees(turned.as_rotvec())
-        farthest = vectors[np.argmax(np.linalg.norm(vectors, axis=1))]
-        bend = vectors @ farthest / np.linalg.norm(farthest)
-        if bend.min() < -10.1 or bend.max() > 170.1:
-            found.append(f"{name} bends from {bend.min():.0f} to {bend.max():.0f} degrees")
-    return found
 
 
 def test_limbs_point_where_the_reference_says(

@@ -48,15 +48,25 @@ def test_parts_of_the_punching_clip_leave_its_borders_out(
 def test_the_document_has_every_figure(tool: ModuleType) -> None:
     one = {"mean_cm": 1.234, "euler_angle_deg": 2.5, "euler_angle_deviation_deg": 0.75,
            "joint_angle_deg": 3.0}  # fmt: skip
-    none = {"mean_cm": 5.0, "euler_angle_deg": None, "euler_angle_deviation_deg": None,
-            "joint_angle_deg": None}  # fmt: skip
-    other = one | {"mean_cm": 3.234}
-    text = tool.document({"Positions": {
-        "walk": {"ours": one, "mean pose": none},
-        "run": {"ours": other, "mean pose": none},
-        "jump": {"ours": one, "mean pose": none},
-    }})  # fmt: skip
-    assert "| ours | 2.50 ± 0.75 | 3.00 | 1.23 |" in text
-    assert "| ours | 2.50 ± 0.75 | 3.00 | 1.90 |" in text
-    assert "| mean pose |  |  | 5.00 |" in text
-    assert text.count("### ") == 4
+    nearest = {"mean_cm": 5.0, "euler_angle_deg": 4.0, "euler_angle_deviation_deg": 1.0,
+               "joint_angle_deg": None}  # fmt: skip
+    other = one | {"mean_cm": 3.234, "euler_angle_deg": 4.0}
+    names = (*tool.COMPARED, tool.COMBINED)
+
+    def part(figures: dict[str, float]) -> dict[str, object]:
+        labelled = {f"{name}/ours": figures for name in names}
+        return {"clips": 7, "figures": labelled | {"nearest pose": nearest}, "curves": {}}
+
+    actions = {"walk": part(one), "run": part(other), "jump": part(one)}
+    apart = {"HDM05, known performer": {"clips": 5, "figures": {"liu2011, live": one}}}
+    found = {"none": actions, "optical": actions, "ultrasonic": actions}
+    found |= {f"without_positions_{noise}": apart for noise in ("none", "inertial")}
+    text = tool.document(found, {"Walk (35_01)": "trackers_walk.png"})
+    assert "| | walk | run | jump | mean |" in text
+    assert "| ours | 2.50 ± 0.75 | 4.00 ± 0.75 | 2.50 ± 0.75 | 3.00 ± 0.75 |" in text
+    assert "| ours | 3.00 / 1.23 | 3.00 / 3.23 | 3.00 / 1.23 | 3.00 / 1.90 |" in text
+    assert "| nearest pose | – / 5.00 | – / 5.00 | – / 5.00 | – / 5.00 |" in text
+    assert "| liu2011, live | 3.00 / 1.23 |" in text
+    assert "Clips tested: walk 7, run 7, jump 7." in text
+    assert "![Walk (35_01)](trackers_walk.png)" in text
+    assert all(title in text for title in tool.NOISES.values())

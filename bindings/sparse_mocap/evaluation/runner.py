@@ -33,7 +33,13 @@ from .clip_result import TestClip
 from .comparison import Estimate, Truth, world_of
 from .contender import Contender, contenders
 from .models import Trainer
-from .performance import PAPER_SITES, Performance, heading_rotations, performed
+from .performance import (
+    PAPER_SITES,
+    SENSOR_RATE_HZ,
+    Performance,
+    heading_rotations,
+    performed,
+)
 from .protocol import EVERYTHING, Content, choose_tests, excluded_clips, motion_files, source_path
 from .result import Evaluation
 from .same_motion import same_motion
@@ -82,6 +88,7 @@ class Settings:
     sites: tuple[str, ...] = PAPER_SITES
     noise: str = "none"
     seed: int = 0
+    sensor_rate_hz: float = SENSOR_RATE_HZ
     channels: tuple[str, ...] = ("specific_force",)
     """What the sensors give."""
     with_gyroscopes: bool = False
@@ -270,6 +277,7 @@ class _Run:
             sites=settings.all_sites,
             noise=settings.noise,
             seed=settings.seed,
+            rate_hz=settings.sensor_rate_hz,
             body_scale=settings.body_scale,
             tempos=settings.tempos,
         )

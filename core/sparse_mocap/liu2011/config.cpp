@@ -49,9 +49,12 @@ const OptionTable<Config>& options() {
                   "deviations beyond which errors of sensors count ever less")
           .integer("max_iterations", &Config::max_iterations, 1, 10'000,
                    "steps of the optimisation, at most")
+          .number("history_trust", &Config::history_trust, 0.0, 1.0,
+                  "how much the poses before are believed, in which errors remain: 1, as in the "
+                  "paper, they are exact; 0: examples are all that is known")
           .flag("joint_residuals", &Config::joint_residuals,
-                "whether errors of a prediction go together where no sensor has an orientation, or "
-                "each angle's is on its own")
+                "whether errors of a prediction go together, or each angle's is on its own, as in "
+                "the paper")
           .number("motion_deviation_m", &Config::motion_deviation_m, 0.0, 10.0,
                   "deviation of sensors without a position from how their accelerations move them, "
                   "m a frame; 0: accelerations are not used")
@@ -78,6 +81,7 @@ Config config_of(const MethodSettings& settings) {
     config.search_position_per_m = 0.0;
     config.search_orientation = 0.0;
     config.joint_residuals = false;
+    config.history_trust = 1.0;
   } else if (!settings.preset.empty() && settings.preset != "default") {
     throw ConfigError("unknown preset '" + settings.preset + "'; liu2011 has default and paper");
   }

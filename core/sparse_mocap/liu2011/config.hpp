@@ -38,6 +38,7 @@ struct Config {
   int max_iterations = 20;
 
   // Beyond the paper.
+  double history_trust = 0.4;       // of the synthesised history, which the paper takes for exact
   bool joint_residuals = true;      // residuals of degrees of freedom go together
   double motion_deviation_m = 0.0;  // of sensors from how their accelerations move them; 0: unused
   double heading_drift_deg = 0.0;   // of each sensor's heading, in a second; 0: it does not drift

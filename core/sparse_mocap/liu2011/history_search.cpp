@@ -22,20 +22,35 @@ HistorySearch::HistorySearch(const MotionExamples& examples, std::vector<WornSen
       reference_(examples.reference(examples.mean())) {
   lay_out_sensors();
   find_axes(is_searched);
-  const Eigen::Index num_axes = axes_.cols();
-  retrieval::FeatureRows rows(examples.num_frames(), num_axes + num_sensor_columns_);
-  for (int frame = 0; frame < examples.num_frames(); ++frame) {
-    if (!is_searched[static_cast<std::size_t>(frame)]) {
-      rows.row(frame).setZero();
-      continue;
+  retrieval::FeatureRows rows =
+      retrieval::FeatureRows::Zero(examples.num_frames(), axes_.cols() + num_sensor_columns_);
+  for (const Clip& clip : examples.database().clips())
+    if (is_searched[static_cast<std::size_t>(clip.begin)]) put_clip(clip, rows);
+  index_.emplace(std::move(rows), is_searched);
+}
+
+// The rows of a clip's frames. What does not depend on where a pose is placed is found once, though
+// each pose is in several histories.
+void HistorySearch::put_clip(const Clip& clip, retrieval::FeatureRows& rows) const {
+  const Eigen::Index num_axes = axes_.cols(), num_root = examples_.num_root_freedoms();
+  const Eigen::Index num_joints = num_freedoms(examples_.body()) - num_root;
+  Eigen::MatrixXd joints(num_joints, clip.num_frames());
+  for (int frame = clip.begin; frame < clip.end; ++frame)
+    examples_.put_joints(frame, reference_, joints.col(frame - clip.begin).data());
+  Eigen::VectorXd vector(mean_.size());
+  for (int frame = clip.begin; frame < clip.end; ++frame) {
+    Eigen::Index begin = 0;
+    for (const auto& place : examples_.history(frame, weights_.num_poses)) {
+      examples_.put_root(place, reference_, vector.data() + begin);
+      vector.segment(begin + num_root, num_joints) = joints.col(place.frame - clip.begin);
+      begin += num_root + num_joints;
     }
     rows.row(frame).head(num_axes) =
-        (axes_.transpose() * (example_vector(frame) - mean_)).transpose().cast<float>();
+        (axes_.transpose() * (vector - mean_)).transpose().cast<float>();
     if (num_sensor_columns_ > 0)
-      put_sensors(sensors_of(examples.body(), worn_, examples.next(frame)),
+      put_sensors(sensors_of(examples_.body(), worn_, examples_.next(frame)),
                   rows.row(frame).data() + num_axes);
   }
-  index_.emplace(std::move(rows), is_searched);
 }
 
 void HistorySearch::search(std::span<const BodyPose> history, std::span<const Observation> observed,

@@ -27,12 +27,13 @@ struct SearchWeights {
 // sensors nearest to where they are measured.
 //
 // Histories are compared on the principal axes that hold kVariance of their variance; the search
-// there is exact.
+// there is exact. In place of the paper's graph of neighbours a sample of the rows says how far to
+// look: the frames that follow the neighbours of the frame before say it less tightly.
 class HistorySearch {
  public:
   static constexpr double kVariance = 0.995;
 
-  // is_searched: one flag a frame.
+  // is_searched: one flag a frame, the same for all of a clip.
   HistorySearch(const MotionExamples& examples, std::vector<WornSensor> worn,
                 const SearchWeights& weights, const std::vector<bool>& is_searched);
 
@@ -45,6 +46,7 @@ class HistorySearch {
 
  private:
   Eigen::VectorXd example_vector(int frame) const;
+  void put_clip(const Clip& clip, retrieval::FeatureRows& rows) const;
   void put_sensors(std::span<const Observation> observed, float* out) const;
   void find_axes(const std::vector<bool>& is_searched);
   void lay_out_sensors();

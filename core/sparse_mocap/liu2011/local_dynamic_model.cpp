@@ -79,7 +79,8 @@ LeadingPairs leading_pairs(const Eigen::MatrixXd& factor, double share) {
 }
 
 LocalDynamicModel local_dynamic_model(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y,
-                                      const Eigen::VectorXd& weights, double variance) {
+                                      const Eigen::VectorXd& weights, double variance,
+                                      double trust) {
   const Eigen::VectorXd share = weights / weights.sum();
   const Eigen::VectorXd root = share.cwiseSqrt();
   LocalDynamicModel model;
@@ -94,7 +95,10 @@ LocalDynamicModel local_dynamic_model(const Eigen::MatrixXd& x, const Eigen::Mat
   // Equation (7): gamma = Lambda_w^-1 U_w^T X^T W y.
   const Eigen::MatrixXd scores = model.axes.transpose() * rooted_x;
   model.gamma = inverse.asDiagonal() * (scores * rooted_y.transpose());
-  model.residuals = rooted_y - model.gamma.transpose() * scores;
+  // Residuals of the regression are orthogonal to what it explains, so that the covariance of these
+  // is that of residuals plus 1 - trust times that of what is explained.
+  model.residuals = rooted_y - (1.0 - std::sqrt(1.0 - trust)) * model.gamma.transpose() * scores;
+  model.gamma *= trust;
   model.deviations = model.residuals.rowwise().norm();
   return model;
 }

@@ -23,8 +23,14 @@ struct LocalDynamicModel {
 // Equations (2) to (8): locally weighted regression from histories (columns of x) to the poses that
 // follow (columns of y) in the principal subspace that holds the share `variance` of the weighted
 // variance of x. Weights are positive.
+//
+// The paper takes the synthesised history that is asked about for exact (trust 1), so that what is
+// wrong in it stays. If it is instead off as examples differ, with 1 / trust - 1 times their
+// covariance, a prediction is drawn to the mean: the coefficients are `trust` times those of the
+// regression, and what the history no longer explains is in the residuals.
 LocalDynamicModel local_dynamic_model(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y,
-                                      const Eigen::VectorXd& weights, double variance);
+                                      const Eigen::VectorXd& weights, double variance,
+                                      double trust = 1.0);
 
 // w_k of equation (6) for the distances of the examples, D being 1 / their median squared, since
 // the paper's identity depends on units.

@@ -26,7 +26,10 @@ std::vector<Experiment::Variant> models(const std::vector<Sensor>& sensors) {
           {"local PCA", {{"prior", "local_pca"}}, sensors},
           {"inverse kinematics", {{"prior", "inverse_kinematics"}}, sensors},
           {"local dynamic models, paper",
-           {{"search_position_per_m", "0"}, {"search_orientation", "0"}},
+           {{"search_position_per_m", "0"},
+            {"search_orientation", "0"},
+            {"joint_residuals", "false"},
+            {"history_trust", "1"}},
            sensors}};
 }
 

@@ -27,15 +27,18 @@ Vec3 rotation_vector(const Quat& rotation) {
 }  // namespace
 
 MotionExamples::MotionExamples(std::shared_ptr<const MotionDatabase> database, Skeleton body,
-                               Direction direction)
+                               Direction direction, const std::vector<bool>& is_used)
     : database_(std::move(database)),
       body_(std::move(body)),
       direction_(direction),
       scale_(leg_length_m(bones_of(body_)) / leg_length_m(bones_of(database_->skeleton()))) {
   lay_out();
-  numbers_.resize(num_frames(), num_numbers_);
+  const int stride = std::max(1, num_frames() / kMostMeanFrames);
+  numbers_.setZero(num_frames(), num_numbers_);
   std::vector<double> row(static_cast<std::size_t>(num_numbers_));
   for (int frame = 0; frame < num_frames(); ++frame) {
+    const bool is_wanted = is_used.empty() || is_used[static_cast<std::size_t>(frame)];
+    if (!is_wanted && frame % stride != 0) continue;
     const BodyPose here = pose(frame);
     for (int j = 0; j < body_.num_joints(); ++j)
       put_numbers(j, here.rotations[static_cast<std::size_t>(j)], row.data());
@@ -43,7 +46,6 @@ MotionExamples::MotionExamples(std::shared_ptr<const MotionDatabase> database, S
         Eigen::Map<const Eigen::RowVectorXd>(row.data(), num_numbers_).cast<float>();
   }
   std::vector<Place> places;
-  const int stride = std::max(1, num_frames() / kMostMeanFrames);
   for (int frame = 0; frame < num_frames(); frame += stride) places.push_back({frame, {}});
   mean_ = mean_of(places, Eigen::VectorXd::Ones(static_cast<Eigen::Index>(places.size())));
 }
@@ -90,24 +92,41 @@ MotionExamples::Reference MotionExamples::reference(const BodyPose& pose) const 
 }
 
 void MotionExamples::put_vector(const Place& place, const Reference& reference, double* out) const {
-  const float* row = numbers_.data() + place.frame * num_numbers_;
+  put_root(place, reference, out);
+  put_joints(place.frame, reference, out + num_root_freedoms());
+}
+
+void MotionExamples::put_root(const Place& place, const Reference& reference, double* out) const {
   const double height_m = database_->root_motion()(place.frame, root_motion_column::height);
   const Vec3 root = place.heading.origin + Vec3(0.0, scale_ * height_m, 0.0);
   out = std::copy_n((root - reference.root_position).eval().data(), 3, out);
-  for (std::size_t j = 0; j < layout_.size(); ++j) {
-    const Layout& layout = layout_[j];
-    const float* own = row + layout.begin;
-    const double* from = reference.numbers.data() + layout.begin;
-    if (!layout.is_ball) {
-      for (std::size_t i = 0; i < layout.axes.size(); ++i)
-        *out++ = std::remainder(static_cast<double>(own[i]) - from[i], 2.0 * kPi);
-      continue;
-    }
-    Quat rotation = Eigen::Map<const Eigen::Quaternionf>(own).cast<double>();
-    if (j == 0) rotation = yaw_quaternion(place.heading.yaw_rad) * rotation;
-    const Vec3 turn = rotation_vector(Eigen::Map<const Quat>(from).conjugate() * rotation);
-    for (const Eigen::Index component : layout.axes) *out++ = turn[component];
+  put_turns(0, place, reference, out);
+}
+
+void MotionExamples::put_joints(int frame, const Reference& reference, double* out) const {
+  for (std::size_t j = 1; j < layout_.size(); ++j) out = put_turns(j, {frame, {}}, reference, out);
+}
+
+Eigen::Index MotionExamples::num_root_freedoms() const {
+  return 3 + static_cast<Eigen::Index>(layout_.front().axes.size());
+}
+
+// The numbers of one joint; returns where the next one's go.
+double* MotionExamples::put_turns(std::size_t joint, const Place& place, const Reference& reference,
+                                  double* out) const {
+  const Layout& layout = layout_[joint];
+  const float* own = numbers_.data() + place.frame * num_numbers_ + layout.begin;
+  const double* from = reference.numbers.data() + layout.begin;
+  if (!layout.is_ball) {
+    for (std::size_t i = 0; i < layout.axes.size(); ++i)
+      *out++ = std::remainder(static_cast<double>(own[i]) - from[i], 2.0 * kPi);
+    return out;
   }
+  Quat rotation = Eigen::Map<const Eigen::Quaternionf>(own).cast<double>();
+  if (joint == 0) rotation = yaw_quaternion(place.heading.yaw_rad) * rotation;
+  const Vec3 turn = rotation_vector(Eigen::Map<const Quat>(from).conjugate() * rotation);
+  for (const Eigen::Index component : layout.axes) *out++ = turn[component];
+  return out;
 }
 
 Eigen::VectorXd MotionExamples::vectors(std::span<const Place> places,

@@ -20,9 +20,10 @@ enum class Direction { forward, backward };
 // stands in for those before it.
 class MotionExamples {
  public:
-  // The body is a standard skeleton; root motion is scaled by the length of its legs.
+  // The body is a standard skeleton; root motion is scaled by the length of its legs. Vectors can
+  // be made of frames of those clips alone whose frames are used: one flag a frame, or all.
   MotionExamples(std::shared_ptr<const MotionDatabase> database, Skeleton body,
-                 Direction direction = Direction::forward);
+                 Direction direction = Direction::forward, const std::vector<bool>& is_used = {});
 
   const MotionDatabase& database() const { return *database_; }
   const Skeleton& body() const { return body_; }
@@ -51,6 +52,11 @@ class MotionExamples {
   Reference reference(const BodyPose& pose) const;
   // pose_vector() of a placed frame about the reference: num_freedoms numbers.
   void put_vector(const Place& place, const Reference& reference, double* out) const;
+  // Its two parts: the root's position and rotation, num_root_freedoms() numbers, and all joints
+  // beyond, which do not depend on the place.
+  void put_root(const Place& place, const Reference& reference, double* out) const;
+  void put_joints(int frame, const Reference& reference, double* out) const;
+  Eigen::Index num_root_freedoms() const;
   // The same of poses one after another.
   Eigen::VectorXd vectors(std::span<const Place> places, const Reference& reference) const;
 
@@ -71,6 +77,8 @@ class MotionExamples {
   };
 
   void lay_out();
+  double* put_turns(std::size_t joint, const Place& place, const Reference& reference,
+                    double* out) const;
   void put_numbers(int joint, const Mat3& R_joint, double* out) const;
   bool is_first(int frame) const;
   int before(int frame) const;

@@ -61,8 +61,8 @@ LocalExamples local_examples(const MotionExamples& examples,
 
 PosePrior dynamic_prior(const Skeleton& body, const LocalExamples& examples,
                         std::span<const BodyPose> recent, const Config& config) {
-  const LocalDynamicModel model =
-      local_dynamic_model(examples.x, examples.y, examples.weights, config.pca_variance);
+  const LocalDynamicModel model = local_dynamic_model(examples.x, examples.y, examples.weights,
+                                                      config.pca_variance, config.history_trust);
   const Eigen::VectorXd least =
       floors(examples.y.rows(), config.root_deviation_floor_m, config.deviation_floor_deg);
   const Eigen::VectorXd predicted = model.predicted(pose_vectors(body, examples.reference, recent));

@@ -31,23 +31,17 @@ retrieval::WeightedPaths as_paths(const std::vector<retrieval::Neighbour>& neare
   return weighted;
 }
 
-// Orientations tell limbs apart that positions leave to the prior.
-Config for_sensors(Config config, const std::vector<Sensor>& sensors) {
-  for (const Sensor& sensor : sensors)
-    if (sensor.channels.has(Channel::orientation)) config.joint_residuals = false;
-  return config;
-}
-
 }  // namespace
 
 Reconstructor::Reconstructor(const Config& config, const MethodContext& context,
                              Direction direction)
-    : examples_(context.database, context.body.value_or(context.database->skeleton()), direction),
-      config_(for_sensors(config, context.sensors)),
+    : is_searched_(retrieval::searched_frames(*context.database, false, context.excluded_clips)),
+      examples_(context.database, context.body.value_or(context.database->skeleton()), direction,
+                is_searched_),
+      config_(config),
       control_(config.control()),
       num_poses_(config.num_poses(context.database->rate_hz())),
       worn_(worn_sensors(examples_.body(), context.sensors)),
-      is_searched_(retrieval::searched_frames(*context.database, false, context.excluded_clips)),
       search_(examples_, worn_,
               {num_poses_, config.search_position_per_m, config.search_orientation}, is_searched_),
       start_(examples_, is_searched_),

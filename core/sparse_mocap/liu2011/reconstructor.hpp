@@ -42,12 +42,12 @@ class Reconstructor : public LiveMethod {
   void remember(BodyPose pose);
   PoseEstimate told(const Reading& reading, const Eigen::VectorXd& weights) const;
 
+  std::vector<bool> is_searched_;
   MotionExamples examples_;
   Config config_;
   ControlWeights control_;
   int num_poses_;  // m
   std::vector<WornSensor> worn_;
-  std::vector<bool> is_searched_;
   HistorySearch search_;
   Start start_;
   std::vector<retrieval::Signal> signals_;

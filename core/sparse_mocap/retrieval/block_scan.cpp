@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t kSampledEach = 32;      // every so many rows are in the sample
-constexpr std::size_t kFirst = 8, kStep = 4;  // dimensions looked at before a block is given up
+constexpr std::size_t kFirst = 8, kStep = 4;  // dimensions looked at before blocks are given up
 constexpr float kMostCode = 255.0F;
 // Floats round a distance by less than this part of it, and by less than that of the numbers that
 // it is a difference of.
@@ -194,11 +194,13 @@ void BlockScan::scan(const Query& query, float radius, Candidates& found) const 
 void BlockScan::scan_group(const Query& query, float radius, std::size_t group,
                            Candidates& found) const {
   std::array<float, kGroupBlocks> outside{};
+  const float limit = squared(query.reach(radius));
+  std::size_t done = 0;
   for (const auto& [dimension, value] : query.values) {
     const std::size_t at = (group * num_dimensions_ + dimension) * kGroupBlocks;
     block_kernels().add_outside(value, &low_[at], &high_[at], kGroupBlocks, outside.data());
+    if (++done % kFirst == 0 && *std::min_element(outside.begin(), outside.end()) > limit) return;
   }
-  const float limit = squared(query.reach(radius));
   const std::size_t begin = group * kGroupBlocks;
   for (std::size_t i = 0; i < std::min(kGroupBlocks, num_blocks_ - begin); ++i)
     if (outside[i] <= limit) scan_block(query, radius, begin + i, found);

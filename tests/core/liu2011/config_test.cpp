@@ -15,6 +15,8 @@ TEST(Config, SearchesByTheSensorsUnlessAskedForThePaper) {
   const Config paper = config_of({"paper", {}});
   EXPECT_EQ(paper.search_position_per_m, 0.0);
   EXPECT_EQ(paper.search_orientation, 0.0);
+  EXPECT_EQ(paper.history_trust, 1.0);
+  EXPECT_FALSE(paper.joint_residuals);
   EXPECT_EQ(paper.num_neighbours, config_of({}).num_neighbours);
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
@@ -94,6 +95,30 @@ TEST(LocalDynamicModel, StatesTheWeightedDeviationOfItsResiduals) {
       sum += weights[k] * residual * residual;
     }
     EXPECT_NEAR(model.deviations[d], std::sqrt(sum / weights.sum()), 1e-9);
+  }
+}
+
+// Examples as a normal distribution of histories and poses, and a history that is off: conditioned
+// in the usual way, without axes or regression.
+TEST(LocalDynamicModel, DoubtsTheHistoryAsANormalDistributionDoes) {
+  Random random(6);
+  const Eigen::MatrixXd x = random.matrix(8, 70, 1.0);
+  const Eigen::MatrixXd y = random.matrix(5, 8, 1.0) * x + random.matrix(5, 70, 0.4);
+  const Eigen::VectorXd weights = random_weights(random, 70), at = random.column(8, 1.0);
+  const Eigen::VectorXd share = weights / weights.sum();
+  const Eigen::MatrixXd dx = x.colwise() - x * share, dy = y.colwise() - y * share;
+  const auto covariance = [&](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+    return Eigen::MatrixXd(a * share.asDiagonal() * b.transpose());
+  };
+  for (const double trust : {0.25, 0.7, 1.0}) {
+    const LocalDynamicModel model = local_dynamic_model(x, y, weights, 1.0, trust);
+    const Eigen::MatrixXd seen = covariance(dx, dx) * (1.0 + (1.0 / trust - 1.0));
+    const Eigen::MatrixXd gain = seen.ldlt().solve(Eigen::MatrixXd(covariance(dx, dy))).transpose();
+    const Eigen::VectorXd expected = y * share + gain * (at - x * share);
+    const Eigen::MatrixXd left = covariance(dy, dy) - gain * covariance(dx, dy);
+    EXPECT_LT((model.predicted(at) - expected).norm(), 1e-9);
+    EXPECT_LT((model.residuals * model.residuals.transpose() - left).norm(), 1e-9);
+    EXPECT_LT((model.deviations - left.diagonal().cwiseSqrt()).norm(), 1e-9);
   }
 }
 

@@ -60,6 +60,18 @@ TEST_F(Examples, NeverReachIntoAnotherClip) {
   }
 }
 
+// Frames of clips that are not used take no part, but in the mean.
+TEST_F(Examples, HaveTheSameVectorsWhereOnlySomeAreUsed) {
+  std::vector<bool> is_used(2 * kFrames, false);
+  std::fill(is_used.begin() + kFrames, is_used.end(), true);
+  const MotionExamples some(testing::database_of(motions_), template_skeleton(), Direction::forward,
+                            is_used);
+  const auto reference = examples_.reference(examples_.mean());
+  for (const int frame : {kFrames, kFrames + 30})
+    EXPECT_EQ(some.vectors(some.history(frame, 3), some.reference(some.mean())),
+              examples_.vectors(examples_.history(frame, 3), reference));
+}
+
 TEST_F(Examples, HaveTheVectorsOfTheirPoses) {
   const Skeleton skeleton = template_skeleton();
   testing::Random random(3);

@@ -62,6 +62,7 @@ TEST_F(Priors, LearnFromTheExamplesAboutTheirMean) {
 TEST_F(Priors, DynamicOnePredictsWhereTheMovementGoes) {
   Config config;
   config.joint_residuals = false;
+  config.history_trust = 1.0;
   config.pca_variance = 0.99;
   const PosePrior prior = dynamic_prior(examples_.body(), local_, recent(150), config);
   EXPECT_LT(distance_m(examples_.body(), mean_of(prior), examples_.next(150)), 0.04);
@@ -72,7 +73,8 @@ TEST_F(Priors, DynamicOnePredictsWhereTheMovementGoes) {
 }
 
 TEST_F(Priors, DynamicOneKnowsHowErrorsOfAPredictionGoTogether) {
-  const Config config;
+  Config config;
+  config.history_trust = 1.0;
   const PosePrior prior = dynamic_prior(examples_.body(), local_, recent(150), config);
   const auto model = local_dynamic_model(local_.x, local_.y, local_.weights, config.pca_variance);
   // The weighted covariance of what the model leaves, example by example, and the floors.

@@ -121,7 +121,7 @@ TEST(Reconstructor, HoldsWrongPositionsOff) {
   testing::Random random(1);
   for (std::size_t t = 6; t < take.size(); t += 4)
     take[t].position.col(random.below(6)) += random.vector(1.0);
-  EXPECT_LT(farthest_m(solved(sensors, take), truth, sensors), 0.1);
+  EXPECT_LT(farthest_m(solved(sensors, take), truth, sensors), 0.12);
 }
 
 TEST(Reconstructor, FollowsOnABodyOfItsOwn) {
