@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,6 +17,7 @@ from .core import capture, core
 from .errors import InputError
 from .job import Cancelled, Job, Progress
 from .live import ANSWER_WITHIN_S, LiveSession, answer_of
+from .names import shown_site
 from .new_files import free_path, stamp
 
 CALIBRATING_BY_POSES = "Calibrating by poses"
@@ -94,6 +96,13 @@ def views_of(points: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
     }
 
 
+def with_shown_names(text: str) -> str:
+    """The text with sites and poses called as the panel and the viewport call them."""
+    shown_names = {site: shown_site(site) for site in core().site_names()}
+    shown_names |= {pose: f'"{told.partition(", ")[0]}"' for pose, told in POSE_TEXTS.items()}
+    return re.sub(r"\w+", lambda word: shown_names.get(word[0], word[0]), text)
+
+
 def pose_guide_job(session: LiveSession, folder: Path, times: Times | None = None) -> Job:
     """The job that guides the performer through all poses and calibrates the trackers.
 
@@ -132,10 +141,11 @@ def _guided(session: LiveSession, times: Times, progress: Progress) -> Any:
                 found = _calibrated(takes, times.hold_s)
                 break
             except core().calibration.CalibrationError as error:
+                problem = with_shown_names(str(error))
                 if attempt == _MOST_ATTEMPTS - 1:
-                    raise
+                    raise InputError(problem) from error
                 takes.pop()
-                shown_now = Shown(name, problem=str(error))
+                shown_now = Shown(name, problem=problem)
     return found
 
 

@@ -67,6 +67,12 @@ def test_the_performer_sees_the_left_at_the_left_as_in_a_mirror():
     assert side[left, 1] == mirrored[left, 1]
 
 
+def test_what_is_wrong_is_said_with_the_names_that_are_shown():
+    said = "left_hand turned by 32 degrees during arms_out; hold the pose still"
+    wanted = 'Left Hand turned by 32 degrees during "Arms out to the sides"; hold the pose still'
+    assert pose_guide.with_shown_names(said) == wanted
+
+
 def test_the_guide_finds_how_trackers_sit(performance, session, tmp_path):
     until(lambda: session.state.sensors[0]["samples"] >= 100 * LEAD_S)
     shown = []
