@@ -50,7 +50,8 @@ Evaluation = dict[str, Any]
 HEAD = """# Accuracy
 
 How far reconstructed joints are off. `./dev accuracy FOLDER` writes this file; the figures of the
-README come from here.
+README come from here. The tests of Tautges et al. 2011, with ours beside what the paper says, are
+in [PAPER.md](PAPER.md).
 
 - Error: RMS over the joints in the heading frame (root position and heading removed), mean over
   each clip's frames, then over clips.

@@ -9,6 +9,7 @@ from pathlib import Path
 from ... import __version__
 from ...files import write_text
 from .common import EASED, PAPER
+from .parts import PARTS
 from .runs import Runs
 from .section import Section, Table
 
@@ -29,8 +30,9 @@ beside each table, in our words.
 - Error: RMS over the 21 joints, a mean over each clip's frames and then over clips. Root frame: the
   root's position and whole rotation removed, as the paper measures. Heading frame: position and
   heading removed, as the other figures of this project are given.
-- {published}: K and I as the same share of the database as in the paper, and poses as its energy
-  gives them. {eased}: the same, shown with a short lag so that poses do not jump.
+- {published}: K and I in the paper's proportion to the database, and
+  poses as its energy gives them. {eased}: the same, shown with a
+  short lag so that poses do not jump.
 - A test's own clip is never in its database, nor its mirror image, its reversal, a copy, or a
   longer take that contains it: these are found by their poses, not by their names.
 - Latency, of the filter of the readings and of the method, is in the tables of the three scenarios;
@@ -42,6 +44,9 @@ def document(sections: Mapping[str, Section], runs: Runs, date: str) -> str:
     """Returns the Markdown text; sections by the names of their parts."""
     head = HEAD.format(published=PAPER.label, eased=EASED.label)
     lines = [head.rstrip(), "", *_setting(runs, date)]
+    missing = [name for name in PARTS if name not in sections]
+    if missing:
+        lines.append(f"**Not in this file: {', '.join(missing)}; `--part` names what is run.**")
     lines += ["", "## In short", ""]
     for section in sections.values():
         lines += [f"**{section.title}**", ""]
@@ -76,7 +81,8 @@ def _setting(runs: Runs, date: str) -> list[str]:
     ]
     if runs.more is not None:
         more = {clip.source for clip in runs.database("diverse").clips} - files
-        lines[0] += f" Further recordings for figure 8: `{runs.more.name}`, {len(more)} clips."
+        folder = f"{runs.more.parent.name}/{runs.more.name}"
+        lines[0] += f" Further recordings for figure 8: `{folder}`, {len(more)} clips."
     if runs.every > 1:
         lines.append(
             f"**Every {_ordinal(runs.every)} of the clips alone, where a part does not say more.**"

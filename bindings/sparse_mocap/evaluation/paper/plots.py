@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import ScalarFormatter
+from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
 from ...files import replaced
 from .section import Bars, Lines, Matrix, Plot
@@ -18,6 +19,8 @@ __all__ = ["draw"]
 
 _COLOURS = ("#1b6ca8", "#d1603d", "#3d8b5f", "#8a5a9e", "#7a7a7a", "#c2a02c", "#4f4f4f", "#b0b0b0")
 _MARKS = "osD^vPX*"
+_LEVEL = 0.3
+_MOST_LEVEL_LABELS = 5
 
 
 def draw(plot: Plot, path: Path) -> Path:
@@ -52,9 +55,21 @@ def _lines(plot: Lines) -> Figure:
         axes.set_xscale("log", base=2)
         axes.set_xticks(next(iter(plot.curves.values()))[0])
         axes.xaxis.set_major_formatter(ScalarFormatter())
-    axes.set_ylim(bottom=0)
-    _legend(axes, len(plot.curves))
+    elif all(float(x).is_integer() for xs, _ in plot.curves.values() for x in xs):
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    _set_height(axes, [value for _, y in plot.curves.values() for value in y])
+    _legend(figure)
     return figure
+
+
+def _set_height(axes: Axes, values: Sequence[float]) -> None:
+    """Begins at 0, unless curves that are nearly level would then be one line."""
+    lowest, highest = min(values), max(values)
+    spread = highest - lowest
+    if spread < _LEVEL * highest:
+        axes.set_ylim(max(0.0, lowest - 1.5 * spread), highest + 0.5 * spread)
+    else:
+        axes.set_ylim(0.0, 1.08 * highest)
 
 
 def _bars(plot: Bars) -> Figure:
@@ -69,10 +84,12 @@ def _bars(plot: Bars) -> Figure:
         )
         if len(labels) * len(plot.groups) <= 16:
             axes.bar_label(bars, fmt="%.1f", fontsize="small", padding=2)
-    turned = 30 if max(map(len, labels)) * len(labels) > 90 else 0
-    axes.set_xticks(range(len(labels)), labels, rotation=turned, ha="right" if turned else "center")
+    axes.set_xticks(range(len(labels)), [label.replace(" (", "\n(") for label in labels])
+    if len(labels) > _MOST_LEVEL_LABELS:
+        axes.tick_params(axis="x", labelrotation=25)
+    axes.set_ylim(top=1.1 * max(max(heights.values()) for heights in plot.groups.values()))
     axes.set(ylabel=plot.ylabel, title=_plain(plot.title))
-    _legend(axes, len(plot.groups))
+    _legend(figure)
     return figure
 
 
@@ -105,17 +122,8 @@ def _figure(width: float, height: float) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def _legend(axes: Axes, count: int) -> None:
-    if count > 4:
-        axes.legend(
-            frameon=False,
-            fontsize="small",
-            loc="upper center",
-            bbox_to_anchor=(0.5, -0.14),
-            ncols=2,
-        )
-    else:
-        axes.legend(frameon=False, fontsize="small")
+def _legend(figure: Figure) -> None:
+    figure.legend(loc="outside lower center", frameon=False, fontsize="small", ncols=2)
 
 
 def _plain(text: str) -> str:

@@ -103,11 +103,27 @@ class Runs:
         self, settings: Settings
     ) -> Iterator[tuple[Clip, Performance, dict[str, Reconstruction]]]:
         """Yields reconstructions with the plain database; these are not kept."""
-        sample = self._sampled(settings, self.every)
-        found = reconstructions(self.database(), self.source, sample)
+        found = reconstructions(self.database(), self.source, settings)
         for number, (clip, performance, solved) in enumerate(found):
             self._report(number, 0, clip.name)
             yield clip, performance, solved
+
+    def figures(
+        self, what: str, settings: Settings, work: Callable[[Settings], Any], most: int
+    ) -> Any:
+        """Returns what work finds of reconstructions, from disk where it is there.
+
+        ``what`` says what it looks for; it is a value of JSON. work(settings) gets about as many
+        tests as ``most`` says.
+        """
+        path = self._path(self.database(), settings, f"{what} of {most} clips")
+        if not path.exists():
+            chosen = choose_tests(
+                self.database().clips, settings.tests, settings.among, settings.per_class
+            )
+            every = max(1, len(chosen) // most)
+            write_text(path, json.dumps(work(self._sampled(settings, every)), allow_nan=False))
+        return json.loads(path.read_text(encoding="utf-8"))
 
     def can_test(self, among: Content) -> bool:
         """Returns whether any recorded clip is of this kind."""
@@ -133,13 +149,14 @@ class Runs:
     def _sampled(settings: Settings, every: int) -> Settings:
         return replace(settings, every=settings.every * every)
 
-    def _path(self, database: MotionDatabase, settings: Settings) -> Path:
+    def _path(self, database: MotionDatabase, settings: Settings, what: str = "") -> Path:
         """Returns the file of an evaluation, named by its data, its settings and this package."""
         about: Sequence[Any] = [
             _KEPT_VERSION,
             database.rows_hash,
             self._files,
             asdict(settings),
+            *([what] if what else []),
         ]
         key = hashlib.sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()[:16]
         return self.kept / "runs" / f"{key}.json"

@@ -13,6 +13,7 @@ from ... import Motion
 from ..contender import Contender
 from ..performance import PAPER_SITES
 from ..protocol import Content
+from ..runner import Settings
 from .common import BEST, LIVE, PAPER, cm, mean_cm, plain, variant
 from .runs import Found, Runs
 from .section import Bars, Lines, Section, Table
@@ -207,6 +208,7 @@ def _swaying_clip(runs: Runs, section: Section, methods: Sequence[Contender]) ->
     )
 
 
+SHOWN_RUNS = 5
 JOGS = Content(classes=("run*", "jog*"))
 FAST_SLOW_FAST = (1.0, 1.0, 0.5, 0.5, 1.0, 1.0)
 
@@ -219,25 +221,17 @@ def root_speed(runs: Runs) -> Section:
         "Runs and jogs slowed down to half their tempo in the middle; speed on the floor over half"
         " a second, scenario 1.",
     )
-    settings = plain(1, PAPER, LIVE, BEST, tempos=FAST_SLOW_FAST, among=JOGS)
-    rows: list[list[str]] = []
-    drawn: tuple[str, dict[str, Floats]] | None = None
     if not runs.can_test(JOGS):
         section.findings = ["No clip of a run or a jog is there."]
         return section
-    for clip, performance, solved in runs.reconstructions(settings):
-        true = _speeds(performance.motion, 25.0)
-        curves = {"truth": true}
-        for label, solution in solved.items():
-            curves[label] = _speeds(solution.motion.without_extremities(), 25.0)
-        count = min(len(speeds) for speeds in curves.values())
-        shown = {label: speeds[:count] for label, speeds in curves.items()}
-        rows.append([clip.name, *_agreement(shown)])
-        if drawn is None or count > len(drawn[1]["truth"]):
-            drawn = (clip.name, shown)
-    if drawn is None:
-        return section
-    labels = [label for label in drawn[1] if label != "truth"]
+    settings = plain(1, PAPER, LIVE, BEST, tempos=FAST_SLOW_FAST, among=JOGS)
+    speeds = runs.figures(
+        "speed of the root", settings, lambda some: _root_speeds(runs, some), SHOWN_RUNS
+    )
+    runs.num_clips.add(len(speeds))
+    rows = [[name, *_agreement(curves)] for name, curves in speeds.items()]
+    longest = max(speeds, key=lambda name: len(speeds[name]["truth"]))
+    labels = [label for label in speeds[longest] if label != "truth"]
     head = ["", *(f"{label}: {what}" for label in labels for what in ("correlation", "off, m/s"))]
     section.tables.append(Table("Speed of the root", head, rows))
     for column, label in enumerate(labels):
@@ -247,31 +241,46 @@ def root_speed(runs: Runs) -> Section:
             f" {min(correlations):.2f} at worst."
         )
     section.plots["fig13a"] = Lines(
-        f"{drawn[0]}: run, half as fast, run",
+        f"{longest}: run, half as fast, run",
         "time (s)",
         "speed of the root (m/s)",
         {
-            label: ((np.arange(len(speeds)) / 25.0).tolist(), speeds.tolist())
-            for label, speeds in drawn[1].items()
+            label: ((np.arange(len(own)) / _SPEED_HZ).tolist(), own)
+            for label, own in speeds[longest].items()
         },
         has_points=False,
     )
     return section
 
 
-def _speeds(motion: Motion, rate_hz: float, over_s: float = 0.5) -> Floats:
+def _root_speeds(runs: Runs, settings: Settings) -> dict[str, dict[str, list[float]]]:
+    """Returns each clip's speeds by label, the truth's first."""
+    found = {}
+    for clip, performance, solved in runs.reconstructions(settings):
+        curves = {"truth": _speeds(performance.motion)}
+        for label, solution in solved.items():
+            curves[label] = _speeds(solution.motion.without_extremities())
+        count = min(len(own) for own in curves.values())
+        found[clip.name] = {label: own[:count].tolist() for label, own in curves.items()}
+    return found
+
+
+_SPEED_HZ = 25.0
+
+
+def _speeds(motion: Motion, over_s: float = 0.5) -> Floats:
     """Returns the root's speed on the floor (m/s), a mean over half a second."""
-    roots = np.asarray(motion.resampled(rate_hz).root_positions)[:, [0, 2]]
-    steps = np.linalg.norm(np.diff(roots, axis=0), axis=1) * rate_hz
-    width = max(1, min(round(over_s * rate_hz), len(steps)))
+    roots = np.asarray(motion.resampled(_SPEED_HZ).root_positions)[:, [0, 2]]
+    steps = np.linalg.norm(np.diff(roots, axis=0), axis=1) * _SPEED_HZ
+    width = max(1, min(round(over_s * _SPEED_HZ), len(steps)))
     return np.asarray(np.convolve(steps, np.full(width, 1.0 / width), mode="valid"))
 
 
-def _agreement(curves: dict[str, Floats]) -> list[str]:
-    true = curves["truth"]
+def _agreement(curves: dict[str, list[float]]) -> list[str]:
+    true = np.array(curves["truth"])
     cells = []
-    for label, speeds in curves.items():
+    for label, own in curves.items():
         if label != "truth":
-            cells.append(f"{np.corrcoef(true, speeds)[0, 1]:.2f}")
-            cells.append(f"{np.abs(speeds - true).mean():.2f}")
+            cells.append(f"{np.corrcoef(true, own)[0, 1]:.2f}")
+            cells.append(f"{np.abs(np.array(own) - true).mean():.2f}")
     return cells
