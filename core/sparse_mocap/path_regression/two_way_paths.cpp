@@ -22,16 +22,20 @@ TwoWayPaths::TwoWayPaths(const std::vector<std::int32_t>& clip_of_frame,
       last_frame_(static_cast<int>(clip_of_frame.size()) - 1),
       config_(config) {}
 
-void TwoWayPaths::run(std::span<const std::vector<retrieval::Neighbour>> columns, int num_paths) {
+void TwoWayPaths::run(std::span<const std::vector<retrieval::Neighbour>> columns, int num_paths,
+                      const std::function<void()>& reached) {
+  constexpr std::size_t kPiece = 64;  // readings
   paths_.assign(columns.size(), {});
   forward_.reset();
   for (std::size_t t = 0; t < columns.size(); ++t) {
+    if (t % kPiece == 0) reached();
     forward_.extend(columns[t]);
     paths_[t] = forward_.paths();
   }
   backward_.reset();
   std::vector<retrieval::Neighbour> mirrored;
   for (std::size_t t = columns.size(); t-- > 0;) {
+    if (t % kPiece == 0) reached();
     mirrored = columns[t];
     for (auto& neighbour : mirrored) neighbour.row = last_frame_ - neighbour.row;
     backward_.extend(mirrored);

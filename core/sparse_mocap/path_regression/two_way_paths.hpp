@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -17,8 +18,10 @@ class TwoWayPaths {
   TwoWayPaths(const std::vector<std::int32_t>& clip_of_frame, const retrieval::OlngConfig& config);
 
   // columns[t] holds the neighbours of reading t, as KnnIndex::search gives them. Of each reading
-  // the num_paths best paths are kept.
-  void run(std::span<const std::vector<retrieval::Neighbour>> columns, int num_paths);
+  // the num_paths best paths are kept. reached is called on the way, and may throw.
+  void run(
+      std::span<const std::vector<retrieval::Neighbour>> columns, int num_paths,
+      const std::function<void()>& reached = [] {});
   // The best paths through the neighbours of reading t, one a neighbour, the best first.
   const std::vector<retrieval::Path>& paths(std::size_t t) const { return paths_[t]; }
 

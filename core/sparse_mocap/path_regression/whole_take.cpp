@@ -86,7 +86,8 @@ std::vector<PoseEstimate> WholeTakeReconstructor::solve(const std::vector<Readin
   const Config& config = solver_.config();
   TwoWayPaths paths(retrieval::clips_of_frames(solver_.database()),
                     {config.penalty, config.forgetting});
-  paths.run(columns, config.num_paths);
+  paths.run(columns, config.num_paths,
+            [&] { progress.report(take.size(), kNumParts * take.size(), "searching"); });
   columns = {};
   auto retrieved = in_parallel<RetrievedFrame>(
       take.size(),

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "retrieval/path_search.hpp"
+#include "sparse_mocap/base/errors.hpp"
 #include "support/synthetic.hpp"
 
 namespace sparse_mocap::path_regression {
@@ -79,6 +80,21 @@ TEST(TwoWayPaths, MayRunAgainAndWithEmptyColumns) {
   problem.columns[2].clear();
   retrieval.run(problem.columns, kAll);
   EXPECT_TRUE(retrieval.paths(2).empty());
+}
+
+TEST(TwoWayPaths, AsksOnTheWayInBothDirectionsWhetherToGoOn) {
+  const std::vector<std::vector<retrieval::Neighbour>> columns(200, {{0.5F, 3}});
+  TwoWayPaths retrieval(std::vector<std::int32_t>(10, 0), {});
+  int asked = 0;
+  retrieval.run(columns, 1, [&] { ++asked; });
+  EXPECT_GE(asked, 6);
+  const auto cancel_at = [&](int last) {
+    asked = 0;
+    retrieval.run(columns, 1, [&] {
+      if (++asked == last) throw Cancelled();
+    });
+  };
+  for (const int last : {1, 3, 6}) EXPECT_THROW(cancel_at(last), Cancelled);
 }
 
 }  // namespace
