@@ -109,6 +109,7 @@ def _matrix(plot: Matrix) -> Figure:
     axes.set_xticks(range(len(plot.columns)), plot.columns)
     axes.set_yticks(range(len(plot.rows)), plot.rows, fontsize="small")
     axes.xaxis.tick_top()
+    axes.grid(visible=False)
     axes.set_title(_plain(plot.title))
     figure.colorbar(image, ax=axes, label="cm")
     return figure
