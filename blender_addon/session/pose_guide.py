@@ -207,6 +207,9 @@ class _Guide:
 
     def wait(self, what: Shown, seconds: float) -> None:
         """Show it for the next so many seconds. Raises Cancelled."""
+        now_s = time.perf_counter()
+        if self._end_s + seconds <= now_s:  # a calculation took longer than the time to get ready
+            self._end_s = now_s
         self._end_s += seconds
         while (left_s := self._end_s - time.perf_counter()) > 0.0:
             _show(replace(what, seconds=left_s))

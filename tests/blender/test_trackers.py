@@ -93,7 +93,7 @@ def test_a_character_follows_trackers_live(tmp_path):
 def test_trackers_are_calibrated_by_poses(tmp_path):
     take, planted = tmp_path / "held.csv", tmp_path / "planted.npz"
     python = os.environ.get("SPARSE_MOCAP_TEST_PYTHON") or shutil.which("python") or "python3"
-    times = [str(LEAD_S + 0.6), "0.6", str(READY_S + HOLD_S - 0.6)]
+    times = [str(LEAD_S + 1.2), "0.6", str(READY_S + HOLD_S - 0.6)]
     maker = _ROOT / "tests" / "python" / "held_poses.py"
     sources = "" if os.environ.get("SPARSE_MOCAP_PACKAGE") else str(_ROOT / "bindings")
     environment = {"PYTHONPATH": os.environ.get("SPARSE_MOCAP_TEST_PATH") or sources}
