@@ -34,7 +34,7 @@ def test_every_part_is_written_and_drawn(
     assert result.exit_code == 0, result.output
     text = (tmp_path / "PAPER.md").read_text(encoding="utf-8")
     assert text.count("\n## ") == 1 + len(PARTS)
-    assert "**Every 8th of the clips alone, where a part does not say more.**" in text
+    assert "**One clip in 8 alone is tested, where a part does not say more.**" in text
     assert "(1 clip tested.)" in text
     assert "nan" not in text
     pictures = set(re.findall(r"!\[.*\]\((.*)\)", text))

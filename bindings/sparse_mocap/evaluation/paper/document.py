@@ -85,7 +85,7 @@ def _setting(runs: Runs, date: str) -> list[str]:
         lines[0] += f" Further recordings for figure 8: `{folder}`, {len(more)} clips."
     if runs.every > 1:
         lines.append(
-            f"**Every {_ordinal(runs.every)} of the clips alone, where a part does not say more.**"
+            f"**One clip in {runs.every} alone is tested, where a part does not say more.**"
         )
     lines.append(
         f"Simulated accelerometers at wrists and ankles unless said. {__version__}, {date}."
@@ -98,10 +98,6 @@ def _clips(counts: Sequence[int]) -> str:
         return ""
     several = f"{counts[0]} to {counts[-1]}" if len(counts) > 1 else f"{counts[0]}"
     return f"({several} clip{'' if counts == [1] else 's'} tested.)"
-
-
-def _ordinal(number: int) -> str:
-    return f"{number}{ {1: 'st', 2: 'nd', 3: 'rd'}.get(number, 'th') }"
 
 
 def _told(section: Section) -> list[str]:
