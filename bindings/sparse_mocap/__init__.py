@@ -93,6 +93,7 @@ if TYPE_CHECKING:
     from .positions import read_positions, write_positions
     from .reconstruction import LiveReconstructor, reconstruct
     from .take import SensorRecord, Take, TakeError, read_take, simulated, write_take
+    from .teaching import Pairing, TaughtClip, pair_take, teach_database
 
 __all__ = [
     "CHANNEL_NAMES",
@@ -116,6 +117,7 @@ __all__ = [
     "MotionDatabase",
     "NoiseModel",
     "OptionInfo",
+    "Pairing",
     "PoseEstimate",
     "ProgressReport",
     "ReadingStream",
@@ -133,6 +135,7 @@ __all__ = [
     "StreamParser",
     "Take",
     "TakeError",
+    "TaughtClip",
     "TrainingClip",
     "__version__",
     "add_to_database",
@@ -164,6 +167,7 @@ __all__ = [
     "nearest_windows",
     "noise_presets",
     "noisy",
+    "pair_take",
     "playback_best_path",
     "read_body",
     "read_calibration",
@@ -184,6 +188,7 @@ __all__ = [
     "standing_pose_names",
     "start_commands",
     "store_model",
+    "teach_database",
     "to_standard",
     "train",
     "with_extremities",
@@ -214,6 +219,7 @@ _PYTHON_HOMES = {
     **dict.fromkeys(("read_positions", "write_positions"), ".positions"),
     **dict.fromkeys(("MethodInfo", "OptionInfo", "method_info"), ".methods"),
     **dict.fromkeys(("LiveReconstructor", "reconstruct"), ".reconstruction"),
+    **dict.fromkeys(("Pairing", "TaughtClip", "pair_take", "teach_database"), ".teaching"),
     **dict.fromkeys(
         ("SensorRecord", "Take", "TakeError", "read_take", "simulated", "write_take"),
         ".take",

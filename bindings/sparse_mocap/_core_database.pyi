@@ -10,7 +10,24 @@ from numpy.typing import NDArray
 
 from ._core_model import Model
 from ._core_motion import Motion, ReadOptions, Skeleton
+from ._core_readings import SensorInput
+from ._core_reconstruction import SensorRecording
 from ._core_types import Path, ProgressCallback
+
+class ClipTake:
+    """What real sensors measured while a clip was performed.
+
+    The clip's rows hold it in place of what virtual sensors read. begin_s: when the clip begins, on
+    the take's clock; correlation: see align_take; coverage: the part of the rows with real
+    readings; channels: of CHANNEL_NAMES, by the sensors' sites.
+    """
+
+    name: str
+    hash: str
+    begin_s: float
+    correlation: float
+    coverage: float
+    channels: dict[str, list[str]]
 
 class Clip:
     """A stretch of a database's rows.
@@ -35,6 +52,7 @@ class Clip:
     is_mirrored: bool
     is_reversed: bool
     tempo: float
+    take: ClipTake | None
     begin: int
     end: int
 
@@ -133,6 +151,58 @@ class ProgressReport:
     bytes: int
     num_bytes: int
 
+class TakeAlignment:
+    """Where in a take a motion was performed, and how well both agree.
+
+    Correlations are 1 at most, however the sensors are mounted; unrelated movements have about 0.5.
+    begin_s: when the motion begins, on the take's clock; correlation: of measured with virtual
+    readings, over all sensors; runner_up: the best one at another time; coverage: the part of the
+    motion during which the take was recorded; sensor_correlations: one a sensor.
+    """
+
+    begin_s: float
+    correlation: float
+    runner_up: float
+    coverage: float
+    sensor_correlations: list[float]
+
+def align_take(
+    motion: Motion,
+    recordings: Sequence[SensorRecording],
+    sensors: Sequence[SensorInput],
+    *,
+    event: tuple[float, float] | None = None,
+    progress: ProgressCallback | None = None,
+) -> TakeAlignment:
+    """Returns where in a take a motion of the standard skeleton was performed.
+
+    recordings: a SensorRecording for each of the sensors (SensorInput), all on one clock. event:
+    when on that clock a clap or a jump happened that the motion has too, from and to; it then
+    decides the time. Raises ConfigError for what is too short to be compared, ValueError for unlike
+    numbers of recordings and sensors, and Cancelled.
+    """
+
+class PairedTake:
+    """What sensors recorded while a motion was performed."""
+
+    def __init__(
+        self,
+        name: str,
+        hash: str,
+        sensors: Sequence[SensorInput],
+        recordings: Sequence[SensorRecording],
+        *,
+        begin_s: float,
+        correlation: float,
+    ) -> None:
+        """Takes the name and hash of the take file.
+
+        begin_s: when the motion begins on its clock; correlation: how well the readings agree with
+        it, see align_take. Raises ValueError for unlike numbers of sensors and recordings.
+        """
+    name: str
+    hash: str
+
 class BuildReport:
     """What an import did.
 
@@ -216,14 +286,16 @@ def add_to_database(
     labels: Mapping[str, tuple[str, str, str, str, float]] = ...,
     label_warnings: Sequence[str] = (),
     rebuild: bool = False,
+    takes: Mapping[Path, PairedTake] = ...,
     remote: _RemoteWork | None = None,
     **options: Unpack[_ImportOptions],
 ) -> BuildReport:
     """Adds motion files to a database, with the copies that it was built with.
 
     output: where the result goes, None: in its place. rebuild: the sources hold the database's own
-    files too, and everything is built anew, so that its skeleton is averaged over all bodies. The
-    rest is as in build_database().
+    files too, and everything is built anew, so that its skeleton is averaged over all bodies.
+    takes: what sensors recorded while files were performed, by the files' paths. The rest is as in
+    build_database().
     """
 
 def drop_from_database(database: Path, clips: Sequence[str], output: Path | None = None) -> int:

@@ -11,7 +11,7 @@ import functools
 import hashlib
 import os
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING
 
@@ -91,6 +91,7 @@ def add_to_database(
     exclude: Sequence[str] = (),
     metadata: Path | None = None,
     rebuild: bool = False,
+    takes: Mapping[Path, _core.PairedTake] | None = None,
     workers: Executor | None = None,
     **options: Unpack[_ImportOptions],
 ) -> _core.BuildReport:
@@ -99,9 +100,12 @@ def add_to_database(
     Replaces the database (atomically) when output is None. Files that are in are not read again.
     Programs that add to one database at once wait for one another. A warning says how far new
     actors would change the averaged skeleton; rebuild averages it anew and needs the database's
-    own files among the sources too. Options and errors as for build_database.
+    own files among the sources too. takes: what sensors recorded while files were performed, by the
+    files' paths (see teaching.pair_take); such a file replaces what it gave before. Options and
+    errors as for build_database.
     """
     sources = _found_by(workers, sources)
+    takes = {_found_by(workers, [path])[0]: take for path, take in (takes or {}).items()}
     labels, warnings = find_labels(sources, exclude, metadata)
     options.setdefault("read", read_options())
     report = _core.add_to_database(
@@ -112,6 +116,7 @@ def add_to_database(
         labels=labels,
         label_warnings=warnings,
         rebuild=rebuild,
+        takes=takes,
         remote=None if workers is None else _remote_work(workers),
         **options,
     )

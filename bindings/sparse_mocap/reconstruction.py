@@ -27,7 +27,13 @@ if TYPE_CHECKING:
 
 Progress = Callable[[int, int, str], bool | None]
 
-__all__ = ["LiveReconstructor", "reconstruct", "with_locations"]
+__all__ = [
+    "LiveReconstructor",
+    "reconstruct",
+    "sensor_recordings",
+    "used_sensors",
+    "with_locations",
+]
 
 
 def reconstruct(
@@ -74,9 +80,9 @@ def reconstruct(
         tracker_origin_m=tracker_origin_m,
     )
     take = with_locations(take, calibration)
-    inputs = _inputs(take, calibration, positions_along_bone, use_gyroscopes)
+    inputs = used_sensors(take, calibration, positions_along_bone, use_gyroscopes)
     return _core.reconstruct(
-        _recordings(take), inputs, request, best_quality=best_quality, progress=progress
+        sensor_recordings(take), inputs, request, best_quality=best_quality, progress=progress
     )
 
 
@@ -222,17 +228,19 @@ def _request(
     )
 
 
-def _inputs(
+def used_sensors(
     take: Take,
     calibration: Calibration | None,
     positions_along_bone: Mapping[str, float] | None,
     use_gyroscopes: bool,
 ) -> list[SensorInput]:
+    """Returns a take's sensors with the channels that each has, as reconstruct() uses them."""
     channels = [_used(channels_in(record), use_gyroscopes) for record in take.sensors.values()]
     return sensor_inputs(calibration, take.sites, channels, positions_along_bone, devices_of(take))
 
 
-def _recordings(take: Take) -> list[_core.SensorRecording]:
+def sensor_recordings(take: Take) -> list[_core.SensorRecording]:
+    """Returns a take's records as the core takes them, in their order."""
     return [
         _core.SensorRecording(
             record.times_s,

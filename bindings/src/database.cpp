@@ -10,6 +10,7 @@
 #include "sparse_mocap/database/motion_database.hpp"
 #include "sparse_mocap/database/sections.hpp"
 #include "sparse_mocap/database/stored_models.hpp"
+#include "sparse_mocap/readings/channel_names.hpp"
 
 namespace sparse_mocap::python {
 namespace {
@@ -79,14 +80,19 @@ std::map<std::string, std::size_t> array_bytes(const MotionDatabase& database) {
   const SiteRows& site = database.site(0);
   const std::size_t num_sites = database.site_names().size();
   const auto num_frames = static_cast<std::size_t>(database.num_frames());
-  return {{"angles", bytes_of(database.angles())},
-          {"positions", bytes_of(database.positions())},
-          {"root_motion", root_motion_column::count * sizeof(float) * num_frames},
-          {"contacts", 2 * num_frames},
-          {"specific_force_pivot", num_sites * bytes_of(site.specific_force_pivot)},
-          {"specific_force_end", num_sites * bytes_of(site.specific_force_end)},
-          {"angular_velocity", num_sites * bytes_of(site.angular_velocity)},
-          {"up", num_sites * bytes_of(site.gravity_direction)}};
+  std::map<std::string, std::size_t> bytes{
+      {"angles", bytes_of(database.angles())},
+      {"positions", bytes_of(database.positions())},
+      {"root_motion", root_motion_column::count * sizeof(float) * num_frames},
+      {"contacts", 2 * num_frames},
+      {"specific_force_pivot", num_sites * bytes_of(site.specific_force_pivot)},
+      {"specific_force_end", num_sites * bytes_of(site.specific_force_end)},
+      {"angular_velocity", num_sites * bytes_of(site.angular_velocity)},
+      {"up", num_sites * bytes_of(site.gravity_direction)}};
+  for (std::size_t s = 0; s < num_sites; ++s)
+    if (const std::size_t own = bytes_of(database.site(s).orientation); own > 0)
+      bytes["orientation"] += own;
+  return bytes;
 }
 
 using Texts = std::map<std::string, std::string>;
@@ -105,7 +111,29 @@ std::vector<std::string> section_names(const MotionDatabase& database) {
   return names;
 }
 
+std::map<std::string, std::vector<std::string_view>> channels_in(const ClipTake& take) {
+  std::map<std::string, std::vector<std::string_view>> names;
+  for (const auto& [site, channels] : take.channels) names[site] = names_of(channels);
+  return names;
+}
+
+void bind_clip_take(py::module_& m) {
+  py::class_<ClipTake>(m, "ClipTake",
+                       R"doc(What real sensors measured while a clip was performed.
+
+The clip's rows hold it in place of what virtual sensors read.)doc")
+      .def_readonly("name", &ClipTake::name, "The take's file.")
+      .def_readonly("hash", &ClipTake::hash, "SHA-256 of the file.")
+      .def_readonly("begin_s", &ClipTake::begin_s, "When the clip begins, on the take's clock.")
+      .def_readonly("correlation", &ClipTake::correlation,
+                    "How well the readings agree with the motion, see align_take.")
+      .def_readonly("coverage", &ClipTake::coverage, "The part of the rows with real readings.")
+      .def_property_readonly("channels", &channels_in,
+                             "The channels, of CHANNEL_NAMES, by the sensors' sites.");
+}
+
 void bind_clips(py::module_& m) {
+  bind_clip_take(m);
   py::class_<SourceSkeleton>(m, "SourceSkeleton",
                              R"doc(One kind of skeleton among a database's sources.
 
@@ -140,6 +168,8 @@ warnings are kinds of warnings about the file and how often (empty for copies).)
       .def_readonly("is_mirrored", &Clip::is_mirrored, "Whether left and right are exchanged.")
       .def_readonly("is_reversed", &Clip::is_reversed, "Whether it runs backwards.")
       .def_readonly("tempo", &Clip::tempo, "How much faster than performed.")
+      .def_readonly("take", &Clip::take,
+                    "The take whose readings its rows hold; None: they are all virtual.")
       .def_readonly("begin", &Clip::begin, "Its first row.")
       .def_readonly("end", &Clip::end, "One past its last row.");
 }

@@ -7,6 +7,7 @@
 #include "common.hpp"
 #include "sparse_mocap/database/builder.hpp"
 #include "sparse_mocap/database/source_files.hpp"
+#include "sparse_mocap/readings/take_alignment.hpp"
 
 namespace sparse_mocap::python {
 namespace {
@@ -17,6 +18,7 @@ using Callback = std::optional<py::function>;
 // actor, class, origin, license; rate in Hz, 0: not said
 using Labels =
     std::map<fs::path, std::tuple<std::string, std::string, std::string, std::string, double>>;
+using Takes = std::map<fs::path, PairedTake>;
 
 // What a Python function gives for requests: an iterator over the answers, None while the next is
 // not there yet.
@@ -117,10 +119,11 @@ BuildReport add(const fs::path& database, const Paths& sources,
                 bool strict, bool keep_duplicates, int num_threads, const Labels& labels,
                 const std::vector<std::string>& label_warnings, const JointNames& by_hand,
                 const std::optional<fs::path>& mappings, const ReadOptions& read, bool rebuild,
-                const Callback& remote, const Callback& callback, const Callback& details) {
-  const ImportOptions options =
-      import_options(exclude, strict, keep_duplicates, num_threads, labels, label_warnings, by_hand,
-                     mappings, read, remote);
+                const Takes& takes, const Callback& remote, const Callback& callback,
+                const Callback& details) {
+  ImportOptions options = import_options(exclude, strict, keep_duplicates, num_threads, labels,
+                                         label_warnings, by_hand, mappings, read, remote);
+  options.takes = takes;
   const Progress progress = progress_from(callback, details);
   const py::gil_scoped_release release;
   const auto change = rebuild ? &rebuild_database : &add_to_database;
@@ -189,10 +192,63 @@ of what they held before. skipped (unusable), duplicates and doubtful are (path,
           "warnings", [](const BuildReport& r) { return texts_of(r.warnings); }, "One line each.");
 }
 
+TakeAlignment aligned(const Motion& motion, const std::vector<SensorRecording>& recordings,
+                      const std::vector<SensorInput>& sensors,
+                      const std::optional<std::pair<double, double>>& event,
+                      const Callback& callback) {
+  if (recordings.size() != sensors.size() || sensors.empty())
+    throw py::value_error("align_take: a recording for each sensor is needed");
+  const Progress progress = progress_from(callback);
+  const py::gil_scoped_release release;
+  return align_take(motion, recordings, sensors, event, progress);
+}
+
+void bind_takes(py::module_& m) {
+  py::class_<TakeAlignment>(m, "TakeAlignment",
+                            R"doc(Where in a take a motion was performed, and how well both agree.
+
+Correlations are 1 at most, however the sensors are mounted; unrelated movements have about 0.5.)doc")
+      .def_readonly("begin_s", &TakeAlignment::begin_s,
+                    "When the motion begins, on the take's clock.")
+      .def_readonly("correlation", &TakeAlignment::correlation,
+                    "Of measured with virtual readings, over all sensors.")
+      .def_readonly("runner_up", &TakeAlignment::runner_up, "The best one at another time.")
+      .def_readonly("coverage", &TakeAlignment::coverage,
+                    "The part of the motion during which the take was recorded.")
+      .def_readonly("sensor_correlations", &TakeAlignment::sensor_correlations,
+                    "One a sensor, in their order.");
+  m.def("align_take", &aligned, py::arg("motion"), py::arg("recordings"), py::arg("sensors"),
+        py::kw_only(), py::arg("event") = py::none(), py::arg("progress") = py::none(),
+        R"doc(Returns where in a take a motion of the standard skeleton was performed.
+
+recordings: a SensorRecording for each of the sensors (SensorInput), all on one clock. event: when
+on that clock a clap or a jump happened that the motion has too, from and to; it then decides the
+time. Raises ConfigError for what is too short to be compared, ValueError for unlike numbers of
+recordings and sensors, and Cancelled.)doc");
+  py::class_<PairedTake>(m, "PairedTake", "What sensors recorded while a motion was performed.")
+      .def(
+          py::init([](std::string name, std::string hash, std::vector<SensorInput> sensors,
+                      std::vector<SensorRecording> recordings, double begin_s, double correlation) {
+            if (sensors.size() != recordings.size() || sensors.empty())
+              throw py::value_error("PairedTake: a recording for each sensor is needed");
+            return PairedTake{std::move(name),       std::move(hash), std::move(sensors),
+                              std::move(recordings), begin_s,         correlation};
+          }),
+          py::arg("name"), py::arg("hash"), py::arg("sensors"), py::arg("recordings"),
+          py::kw_only(), py::arg("begin_s"), py::arg("correlation"),
+          R"doc(Takes the name and hash of the take file.
+
+begin_s: when the motion begins on its clock; correlation: how well the readings agree with it, see
+align_take. Raises ValueError for unlike numbers of sensors and recordings.)doc")
+      .def_readonly("name", &PairedTake::name, "The take's file.")
+      .def_readonly("hash", &PairedTake::hash, "Tells its content from any other.");
+}
+
 }  // namespace
 
 void bind_database_import(py::module_& m) {
   bind_reports(m);
+  bind_takes(m);
   const std::vector<std::string> no_patterns;
   m.def("find_motion_files", &motion_files, py::arg("sources"), py::arg("exclude") = no_patterns,
         py::arg("read") = ReadOptions(),
@@ -233,13 +289,15 @@ request of this version.)doc");
         py::arg("strict") = false, py::arg("keep_duplicates") = false, py::arg("num_threads") = 0,
         py::arg("labels") = Labels(), py::arg("label_warnings") = no_patterns,
         py::arg("by_hand") = JointNames(), py::arg("mappings") = py::none(),
-        py::arg("read") = ReadOptions(), py::arg("rebuild") = false, py::arg("remote") = py::none(),
-        py::arg("progress") = py::none(), py::arg("details") = py::none(),
+        py::arg("read") = ReadOptions(), py::arg("rebuild") = false, py::arg("takes") = Takes(),
+        py::arg("remote") = py::none(), py::arg("progress") = py::none(),
+        py::arg("details") = py::none(),
         R"doc(Adds motion files to a database, with the copies that it was built with.
 
 output: where the result goes, None: in its place. rebuild: the sources hold the database's own
-files too, and everything is built anew, so that its skeleton is averaged over all bodies. The
-rest is as in build_database().)doc");
+files too, and everything is built anew, so that its skeleton is averaged over all bodies.
+takes: what sensors recorded while files were performed, by the files' paths. The rest is as in
+build_database().)doc");
   m.def("drop_from_database", &drop, py::arg("database"), py::arg("clips"),
         py::arg("output") = py::none(),
         R"doc(Drops the clips whose name or source matches a glob pattern, and returns how many.

@@ -36,6 +36,7 @@ from . import (
     record,
     sensor_table,
     take,
+    teach,
     training,
     try_it,
 )
@@ -46,6 +47,7 @@ CLASSES = (
     *import_motion.CLASSES,
     *mapping.CLASSES,
     *database.CLASSES,
+    *teach.CLASSES,
     *clips.CLASSES,
     *take.CLASSES,
     *reconstruct.CLASSES,

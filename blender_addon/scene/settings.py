@@ -22,6 +22,7 @@ from ..session.methods import (
     written_options,
 )
 from .preferences import PERSONAL, delegating, own_property
+from .teaching import SPARSEMOCAP_PG_teaching
 from .training import SPARSEMOCAP_PG_training
 
 _kept_items: dict[str, Items] = {}
@@ -280,6 +281,7 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
     )
     more_ports: CollectionProperty(type=SPARSEMOCAP_PG_port)
     training: PointerProperty(type=SPARSEMOCAP_PG_training)
+    teaching: PointerProperty(type=SPARSEMOCAP_PG_teaching)
 
 
 SPARSEMOCAP_PG_settings.__annotations__ |= {name: delegating(name) for name in PERSONAL}
@@ -309,6 +311,7 @@ def register() -> None:
     bpy.utils.register_class(SPARSEMOCAP_PG_option)
     bpy.utils.register_class(SPARSEMOCAP_PG_take)
     bpy.utils.register_class(SPARSEMOCAP_PG_training)
+    bpy.utils.register_class(SPARSEMOCAP_PG_teaching)
     bpy.utils.register_class(SPARSEMOCAP_PG_settings)
     Scene.sparse_mocap = PointerProperty(type=SPARSEMOCAP_PG_settings)
 
@@ -317,6 +320,7 @@ def unregister() -> None:
     """Unregister the settings."""
     del Scene.sparse_mocap
     bpy.utils.unregister_class(SPARSEMOCAP_PG_settings)
+    bpy.utils.unregister_class(SPARSEMOCAP_PG_teaching)
     bpy.utils.unregister_class(SPARSEMOCAP_PG_training)
     bpy.utils.unregister_class(SPARSEMOCAP_PG_take)
     bpy.utils.unregister_class(SPARSEMOCAP_PG_option)

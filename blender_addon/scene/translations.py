@@ -36,7 +36,7 @@ def tr_line(line: str) -> str:
     return line
 
 
-_OUR_WORDS = {"kind", "job", "match", "reason"}
+_OUR_WORDS = {"agreement", "kind", "job", "match", "reason"}
 """What is filled in that is ours to translate, unlike the names of objects and files."""
 
 

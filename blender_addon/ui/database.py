@@ -16,6 +16,7 @@ from ..session.demo import MAKING, TRYING
 from ..session.free_motions import FREE_MOTIONS
 from . import text
 from .step import StepPanel, action_button, job_is_running, redraw_soon, tick
+from .teaching import draw_teaching
 
 _MOST_SHOWN = 3  # skipped files
 
@@ -43,6 +44,8 @@ class SPARSEMOCAP_PT_database(StepPanel, Panel):
             hint = "Open a motion database (.smdb), or build one:"
             text.paragraph(self.layout, context, hint, icon="INFO")
         _outcome(self.layout, context)
+        if settings.database:
+            draw_teaching(self.layout, context)
         _build_form(self.layout, context, settings, is_first=not settings.database)
         if not settings.database:
             _free_motions(self.layout, context)

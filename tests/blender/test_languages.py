@@ -12,7 +12,8 @@ import rigs
 from support import Skipped, addon, choose_files, error_of, raised, settings
 
 NOT_SHOWN = {
-    *("directory", "index", "training"),  # what file browsers and buttons fill in, and a group
+    # What file browsers and buttons fill in, and groups:
+    *("directory", "index", "training", "teaching"),
     "The options of a sensor protocol; the tooltip shows them.",  # says those of the protocol
 }
 

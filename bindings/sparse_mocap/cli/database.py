@@ -21,11 +21,13 @@ from .. import (
     mapping_folder,
     read_mapping,
 )
+from ..calibration_file import read_calibration
 from ..motion_files import read_options
+from ..teaching import teach_database
 from ..workers import cluster
 from .console import import_bar, warn
 from .database_info import described, show
-from .options import FilePath, reading_options, scheduler_option
+from .options import FilePath, Span, calibration_option, reading_options, scheduler_option
 
 __all__ = ["add", "build", "database", "drop", "info_command"]
 
@@ -143,19 +145,81 @@ def build(
     help="Build everything anew, so that the skeleton is averaged over all bodies. The sources must"
     " include the files that are in the database.",
 )  # fmt: skip
+@click.option(
+    "--take", "take_path", metavar="TAKE.csv", type=FilePath,
+    help="What sensors recorded during the motion (one file): the database keeps these readings"
+    " and prefers them.",
+)  # fmt: skip
+@click.option(
+    "--clap", type=Span(),
+    help="When the take has a clap or jump that the motion has too, in the take's seconds; by"
+    " default the two are aligned by comparing all readings.",
+)  # fmt: skip
+@calibration_option
 @_import_options
-def add(path: Path, sources: tuple[Path, ...], output: Path | None, **options: Any) -> None:
+def add(
+    path: Path,
+    sources: tuple[Path, ...],
+    output: Path | None,
+    take_path: Path | None,
+    clap: tuple[float, float] | None,
+    calibration_path: Path | None,
+    **options: Any,
+) -> None:
     """Adds motion capture to a database.
 
     The new clips get the database's skeleton, frame rate and kinds of copies. Files already in the
     database are not read again; clips of files that have changed are replaced.
+
+    With --take, the database learns what your own sensors measure: perform a movement with the
+    sensors on while it is captured in another way, such as from video.
     """
     target = output or path
+    if take_path is not None:
+        _teach(path, sources, target, take_path, clap, calibration_path, options)
+        return
+    if clap is not None or calibration_path is not None:
+        raise click.UsageError("--clap and --calibration need --take")
     with import_bar("Adding") as (progress, details):
         report = add_to_database(
             path, list(sources), target, progress=progress, details=details, **options
         )
     _print(target, report, MotionDatabase(target).rate_hz)
+
+
+def _teach(
+    path: Path,
+    sources: tuple[Path, ...],
+    target: Path,
+    take_path: Path,
+    clap: tuple[float, float] | None,
+    calibration_path: Path | None,
+    options: dict[str, Any],
+) -> None:
+    if options.get("rebuild"):
+        raise click.UsageError("--take does not go with --rebuild, which keeps the takes' readings")
+    if len(sources) != 1 or sources[0].is_dir():
+        raise click.UsageError("--take needs one motion file, the one performed during the take")
+    options.pop("rebuild", None)
+    by_hand = options.pop("by_hand")
+    with import_bar("Adding") as (progress, details):
+        taught = teach_database(
+            path,
+            sources[0],
+            take_path,
+            target,
+            clap=clap,
+            calibration=None if calibration_path is None else read_calibration(calibration_path),
+            progress=progress,
+            details=details,
+            by_hand=by_hand,
+            **options,
+        )
+    _print(target, taught.report, MotionDatabase(target).rate_hz)
+    click.echo(f"{take_path.name}: {taught.pairing.line}")
+    channels = sorted({channel for own in taught.real.values() for channel in own})
+    click.echo(f"real readings of {', '.join(taught.real)}: {', '.join(channels)}")
+    warn(taught.notes)
 
 
 @database.command()

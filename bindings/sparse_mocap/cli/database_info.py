@@ -12,6 +12,7 @@ from typing import Any
 import click
 
 from .. import Clip, FormatError, MotionDatabase
+from .._core import ClipTake
 
 __all__ = ["described", "is_copy", "show"]
 
@@ -40,6 +41,9 @@ def described(opened: MotionDatabase) -> dict[str, Any]:
         "num_sources": len({clip.source for clip in clips}),
         "source_frames": sum(clip.source_frames for clip in originals),
         "source_hours": sum(map(_source_hours, originals)),
+        "takes": [
+            _take(clip.take) | {"clip": clip.name} for clip in originals if clip.take is not None
+        ],
         "source_hours_by_actor": _hours_by(originals, lambda clip: clip.actor),
         "source_hours_by_class": _hours_by(originals, lambda clip: clip.motion_class),
         "origins": _counts(clip.origin for clip in originals if clip.origin),
@@ -80,13 +84,19 @@ def is_copy(clip: Clip) -> bool:
     return clip.is_mirrored or clip.is_reversed or clip.tempo != 1.0
 
 
+def _take(take: ClipTake) -> dict[str, Any]:
+    names = ("name", "hash", "begin_s", "correlation", "coverage", "channels")
+    return {name: getattr(take, name) for name in names}
+
+
 def _clip(clip: Clip) -> dict[str, Any]:
     names = (
         "name", "actor", "motion_class", "source", "source_hash", "skeleton_hash", "skeleton",
         "origin", "license", "source_frames", "source_rate_hz", "warnings", "is_mirrored",
         "is_reversed", "tempo", "begin", "end",
     )  # fmt: skip
-    return {name: getattr(clip, name) for name in names}
+    take = None if clip.take is None else _take(clip.take)
+    return {name: getattr(clip, name) for name in names} | {"take": take}
 
 
 def _counts(labels: Iterable[str]) -> dict[str, int]:
@@ -166,6 +176,10 @@ def show(info: Mapping[str, Any]) -> None:
         click.echo(
             f"warning  {warning['kind']}: {warning['count']} times in {warning['num_files']} files"
         )
+    for take in info["takes"][:_MOST_FILES]:
+        click.echo(f"take     {_take_line(take)}")
+    if len(info["takes"]) > _MOST_FILES:
+        click.echo(f"take     and {len(info['takes']) - _MOST_FILES} more, see --json")
     for model in info["models"]:
         click.echo(f"model    {_model_line(model)}")
     if info["other_arrays"]:
@@ -183,6 +197,15 @@ def _skeleton_line(skeleton: Mapping[str, Any]) -> str:
     return (
         f"{skeleton['id']}, {skeleton['num_joints']} joints, {skeleton['num_files']} files,"
         f" unit scale {skeleton['unit_scale']:g}: {mapping}"
+    )
+
+
+def _take_line(take: Mapping[str, Any]) -> str:
+    channels = sorted({name for own in take["channels"].values() for name in own})
+    return (
+        f"{take['clip']} with {take['name']} from {take['begin_s']:.2f} s,"
+        f" agreement {take['correlation']:.2f}: {', '.join(channels)} of"
+        f" {', '.join(take['channels'])}"
     )
 
 

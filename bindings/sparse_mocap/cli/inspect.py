@@ -10,6 +10,7 @@ import click
 from rich.table import Table
 
 from .. import (
+    MotionDatabase,
     find_motion_files,
     forget_mapping,
     read_mapping,
@@ -18,6 +19,7 @@ from .. import (
 )
 from ..inspection import Inspection, inspect_motion
 from .console import print_table, progress_bar, write_json
+from .database_info import described, show
 from .faults import Fault
 from .options import FilePath, OutputPath, reading_options
 
@@ -57,10 +59,17 @@ def inspect(
     """Shows the content of motion files and how their joints are mapped.
 
     SOURCE is a .bvh, .amc, .npz (SMPL, AMASS) or .mvnx file, or a folder, which is searched
-    recursively. Errors are angles between limbs of the file and of the standard skeleton.
+    recursively. Errors are angles between limbs of the file and of the standard skeleton. Of a
+    motion database (.smdb) it shows the same as `database info`.
     """
     if remember and mapping_path is None:
         raise click.UsageError("--remember needs --mapping")
+    databases = [path for path in sources if path.suffix == ".smdb"]
+    sources = tuple(path for path in sources if path not in databases)
+    for path in databases:
+        show(described(MotionDatabase(path)))
+    if databases and not sources:
+        return
     by_hand = read_mapping(mapping_path) if mapping_path else None
     files = [Path(path) for path in find_motion_files(list(sources))]
     if save_mapping and len(files) != 1:

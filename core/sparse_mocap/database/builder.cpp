@@ -205,6 +205,27 @@ void keep_labels(const DatabaseContent& old, const Importer& importer, const Imp
   }
 }
 
+// Real readings depend on no skeleton: puts those that the old database's clips had into the same
+// clips of the new one.
+void keep_real_readings(const DatabaseContent& old, DatabaseContent& content) {
+  const auto is_same = [](const Clip& a, const Clip& b) {
+    return a.source_hash == b.source_hash && a.skeleton_hash == b.skeleton_hash &&
+           a.is_mirrored == b.is_mirrored && a.is_reversed == b.is_reversed && a.tempo == b.tempo;
+  };
+  if (old.site_names != content.site_names) return;
+  for (std::size_t c = 0; c < content.clips.size(); ++c) {
+    Clip& clip = content.clips[c];
+    const auto at = std::find_if(old.clips.begin(), old.clips.end(), [&](const Clip& known) {
+      return known.take && is_same(known, clip);
+    });
+    if (at == old.clips.end() || clip.take) continue;
+    const PackedRows& rows = old.clip_rows[static_cast<std::size_t>(at - old.clips.begin())];
+    if (rows.num_frames() != content.clip_rows[c].num_frames()) continue;
+    clip.take = at->take;
+    keep_real_readings(*clip.take, rows, content.clip_rows[c]);
+  }
+}
+
 json build_info(const CopyOptions& copies, const ImportOptions& options, std::size_t num_bodies) {
   json info{{"mirror", copies.add_mirrored},
             {"reverse", copies.add_reversed},
@@ -273,6 +294,7 @@ BuildReport rebuild_database(const fs::path& database, const std::vector<fs::pat
   content.rate_hz = copies.rate_hz;
   importer.import(content, copies);
   keep_labels(old, importer, options, content);
+  keep_real_readings(old, content);
   if (!old.further.tensors.empty())
     importer.report().warnings.push_back(
         "the models in the database are left out, since they belong to its old skeleton; train "

@@ -9,6 +9,7 @@
 
 #include "sparse_mocap/base/progress.hpp"
 #include "sparse_mocap/database/file_work.hpp"
+#include "sparse_mocap/database/paired_take.hpp"
 #include "sparse_mocap/formats/mapping_file.hpp"
 #include "sparse_mocap/formats/motion_file.hpp"
 
@@ -31,6 +32,9 @@ struct ImportOptions {
   std::vector<std::string> label_warnings;             // one line each, for the report
   MappingChoice mapping;                               // written by hand
   ReadOptions read;
+  // What sensors recorded while files were performed, by their paths as well. Such a file is always
+  // read, and takes the place of what it gave before.
+  std::map<std::filesystem::path, PairedTake> takes;
 };
 
 struct BuildOptions : ImportOptions {
@@ -85,8 +89,9 @@ BuildReport add_to_database(const std::filesystem::path& database,
                             const Progress& progress = Progress());
 
 // Builds a database anew from its own files and others, all of which the sources must hold: the
-// skeleton is averaged over all bodies. Rate, copies, and labels that the new ones do not replace
-// stay. Errors as above; FormatError too when a file of the database is not among the sources.
+// skeleton is averaged over all bodies. Rate, copies, readings of real sensors, and labels that the
+// new ones do not replace stay. Errors as above; FormatError too when a file of the database is not
+// among the sources.
 BuildReport rebuild_database(const std::filesystem::path& database,
                              const std::vector<std::filesystem::path>& sources,
                              const std::filesystem::path& output, const ImportOptions& options,

@@ -1,14 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sparse_mocap/motion/extremities.hpp"
+#include "sparse_mocap/readings/reading.hpp"
 
 namespace sparse_mocap {
+
+// What real sensors measured while a clip was performed, which its rows hold in place of what
+// virtual ones read.
+struct ClipTake {
+  std::string name;                          // the take's file
+  std::string hash;                          // tells its content from any other: SHA-256
+  double begin_s = 0.0;                      // when the clip begins, on the take's clock
+  double correlation = 0.0;                  // as TakeAlignment
+  double coverage = 0.0;                     // part of the rows that hold real readings
+  std::map<std::string, Channels> channels;  // by the sensors' sites
+
+  bool operator==(const ClipTake&) const = default;
+};
 
 // A stretch of rows [begin, end) that is one continuous motion.
 struct Clip {
@@ -31,6 +47,7 @@ struct Clip {
   bool is_mirrored = false;
   bool is_reversed = false;
   double tempo = 1.0;  // how much faster than performed
+  std::optional<ClipTake> take;
   int begin = 0;
   int end = 0;
 
@@ -41,6 +58,19 @@ struct Clip {
 
 inline bool has_any_extremity(const Clip& clip) {
   return clip.has_extremity != std::array<bool, kNumExtremities>{};
+}
+
+// Whether the clip's rows hold what a real sensor at this site measured in a channel.
+inline bool is_real(const Clip& clip, const std::string& site, Channel channel) {
+  if (!clip.take) return false;
+  const auto at = clip.take->channels.find(site);
+  return at != clip.take->channels.end() && at->second.has(channel);
+}
+
+// Whether any of the clips has an orientation that a sensor at this site told.
+inline bool has_real_orientation(const std::vector<Clip>& clips, const std::string& site) {
+  return std::any_of(clips.begin(), clips.end(),
+                     [&](const Clip& clip) { return is_real(clip, site, Channel::orientation); });
 }
 
 // One kind of skeleton among the sources: files whose joints have the same names and parents.

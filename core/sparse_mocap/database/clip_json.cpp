@@ -4,6 +4,7 @@
 #include <set>
 
 #include "sparse_mocap/motion/extremities.hpp"
+#include "sparse_mocap/readings/channel_names.hpp"
 
 namespace sparse_mocap {
 
@@ -16,6 +17,28 @@ std::vector<std::string> names_of_extremities(const Clip& clip) {
   for (std::size_t e = 0; e < clip.has_extremity.size(); ++e)
     if (clip.has_extremity[e]) names.emplace_back(extremity_names()[e]);
   return names;
+}
+
+json take_json(const ClipTake& take) {
+  json channels = json::object();
+  for (const auto& [site, of_site] : take.channels) channels[site] = names_of(of_site);
+  return {{"name", take.name},         {"hash", take.hash},
+          {"begin_s", take.begin_s},   {"correlation", take.correlation},
+          {"coverage", take.coverage}, {"channels", std::move(channels)}};
+}
+
+// Channels that only later versions know are left out.
+ClipTake take_from(const json& entry) {
+  ClipTake take{entry.at("name").get<std::string>(), entry.at("hash").get<std::string>(),
+                entry.at("begin_s").get<double>(),   entry.at("correlation").get<double>(),
+                entry.at("coverage").get<double>(),  {}};
+  for (const auto& [site, names] : entry.at("channels").items()) {
+    const auto known = names.get<std::set<std::string>>();
+    Channels& channels = take.channels[site];
+    for (const Channel channel : all_channels())
+      if (known.contains(std::string(name_of(channel)))) channels = channels | channel;
+  }
+  return take;
 }
 
 }  // namespace
@@ -43,6 +66,7 @@ json clip_json(const Clip& clip) {
   if (!clip.warnings.empty()) entry["warnings"] = clip.warnings;
   const auto extremities = names_of_extremities(clip);
   if (!extremities.empty()) entry["extremities"] = extremities;
+  if (clip.take) entry["take"] = take_json(*clip.take);
   return entry;
 }
 
@@ -69,6 +93,7 @@ Clip clip_from(const json& entry) {
   const auto extremities = entry.value("extremities", std::set<std::string>());
   for (std::size_t e = 0; e < clip.has_extremity.size(); ++e)
     clip.has_extremity[e] = extremities.contains(std::string(extremity_names()[e]));
+  if (const auto take = entry.find("take"); take != entry.end()) clip.take = take_from(*take);
   return clip;
 }
 

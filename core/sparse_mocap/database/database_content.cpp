@@ -43,6 +43,7 @@ class Arrays {
       add_of_site("specific_force_end", &PackedSite::specific_force_end);
       add_of_site("angular_velocity", &PackedSite::angular_velocity);
       add_of_site("up", &PackedSite::gravity_direction);
+      if (has_real_orientation(content.clips, content.site_names[s])) add_orientation(s);
     }
   }
 
@@ -71,7 +72,33 @@ class Arrays {
                        {std::as_bytes(std::span(scales))}});
   }
 
+  // Zero in clips whose takes do not tell it.
+  void add_orientation(std::size_t site) {
+    for (const auto& rows : content_.clip_rows)
+      if (nothing_.rows() < rows.num_frames()) nothing_.setZero(rows.num_frames(), 4);
+    ArrayInPieces array{{site_array(content_.site_names[site], "orientation"),
+                         kElementTypeOf<std::int16_t>,
+                         {0, 4},
+                         {}},
+                        {}};
+    std::vector<float>& scales = scales_.emplace_back();
+    for (const auto& rows : content_.clip_rows) {
+      const PackedArray& part = rows.sites.at(site).orientation;
+      const auto num_frames = static_cast<std::size_t>(rows.num_frames());
+      const bool is_told = part.values.rows() == rows.num_frames();
+      array.tensor.shape[0] += num_frames;
+      array.pieces.push_back(is_told ? bytes_of(part.values)
+                                     : std::as_bytes(std::span(nothing_.data(), 4 * num_frames)));
+      scales.push_back(is_told ? part.scale : 1.0F);
+    }
+    const std::string scale = scale_name(array.tensor.name);
+    arrays_.push_back(std::move(array));
+    arrays_.push_back(
+        {{scale, ElementType::f32, {scales.size(), 1}, {}}, {std::as_bytes(std::span(scales))}});
+  }
+
   const DatabaseContent& content_;
+  decltype(PackedArray::values) nothing_;
   std::list<std::vector<float>> scales_;
   std::vector<ArrayInPieces> arrays_;
 };
@@ -150,6 +177,8 @@ PackedRows packed_rows_of(const MotionDatabase& database, const Clip& clip) {
                           packed_rows_of(site.specific_force_end, clip),
                           packed_rows_of(site.angular_velocity, clip),
                           packed_rows_of(site.gravity_direction, clip)});
+    if (is_real(clip, database.site_names()[s], Channel::orientation))
+      rows.sites.back().orientation = packed_rows_of(site.orientation, clip);
   }
   return rows;
 }

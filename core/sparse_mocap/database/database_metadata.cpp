@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -118,6 +119,15 @@ class MetadataReader {
     metadata_.sources.duplicates = left_out_from(sources.at("duplicates"));
   }
 
+  bool is_possible(const ClipTake& take) const {
+    const auto& sites = metadata_.site_names;
+    return std::isfinite(take.begin_s) && std::abs(take.correlation) <= 1.001 &&
+           take.coverage >= 0.0 && take.coverage <= 1.0 &&
+           std::all_of(take.channels.begin(), take.channels.end(), [&](const auto& entry) {
+             return std::find(sites.begin(), sites.end(), entry.first) != sites.end();
+           });
+  }
+
   void check_clip(const Clip& clip, int expected_begin) const {
     const auto refuse_clip = [&](const char* problem) {
       refuse("clip '" + clip.name + "' " + problem);
@@ -127,6 +137,7 @@ class MetadataReader {
     if (!(clip.tempo > 0.0 && clip.tempo < 100.0)) refuse_clip("has an impossible tempo");
     if (clip.source_frames < 0 || !(clip.source_rate_hz >= 0.0 && clip.source_rate_hz < 1e6))
       refuse_clip("has an impossible source");
+    if (clip.take && !is_possible(*clip.take)) refuse_clip("has an impossible take");
     const auto& skeletons = metadata_.sources.skeletons;
     if (!clip.skeleton.empty() &&
         std::none_of(skeletons.begin(), skeletons.end(),

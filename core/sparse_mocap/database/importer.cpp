@@ -189,6 +189,13 @@ void Importer::recognise(DatabaseContent& content) {
     const auto* hashes = std::get_if<SourceHashes>(&outcome);
     if (hashes == nullptr) return skip(file, std::get<FormatError>(outcome));
     const auto [begin, end] = held.equal_range(*hashes);
+    if (options_.takes.contains(file.path)) {
+      if (is_repeated(i, *hashes)) return;
+      for (auto known = begin; known != end; ++known) replaced_.insert(known->second);
+      if (held_sources.contains(file.name)) replaced_.insert(file.name);
+      pending_.push_back({i, *hashes});
+      return;
+    }
     const bool is_held = std::any_of(begin, end, [&](const auto& known) {
       return known.second == file.name || !options_.keep_duplicates;
     });
@@ -250,9 +257,11 @@ void Importer::import(DatabaseContent& content, const CopyOptions& copies) {
     const SourceFile& file = files_[pending_[i].file];
     auto* imported = std::get_if<ImportedFile>(&outcome);
     count(file, imported != nullptr ? imported->clips.front().source_frames : 0);
-    if (imported != nullptr) return take_in(file, std::move(*imported), content);
-    replaced_.erase(file.name);
-    skip(file, std::get<FormatError>(outcome));
+    if (imported != nullptr && pair(file, content, *imported))
+      return take_in(file, std::move(*imported), content);
+    keep_old_clips(pending_[i], content);
+    if (imported == nullptr) return skip(file, std::get<FormatError>(outcome));
+    skip(file, FormatError({file.path}, "was not performed while the take was recorded"));
   };
   work_on_files(options_, pending_.size(), request, import_file, decoded_import, take,
                 [&](std::size_t i) { show(files_[pending_[i].file]); });
@@ -260,8 +269,24 @@ void Importer::import(DatabaseContent& content, const CopyOptions& copies) {
   sort_doubtful();
 }
 
+// Puts the readings of the file's take in, if it has one; false when that is impossible.
+bool Importer::pair(const SourceFile& file, const DatabaseContent& content,
+                    ImportedFile& imported) {
+  const auto take = options_.takes.find(file.path);
+  if (take == options_.takes.end()) return true;
+  return put_real_readings(take->second, content.skeleton, content.rate_hz, imported) > 0;
+}
+
+// What was to be replaced by a file that cannot be used.
+void Importer::keep_old_clips(const Pending& pending, const DatabaseContent& content) {
+  replaced_.erase(files_[pending.file].name);
+  for (const Clip& clip : content.clips)
+    if (SourceHashes{clip.source_hash, clip.skeleton_hash} == pending.hashes)
+      replaced_.erase(clip.source);
+}
+
 void Importer::take_in(const SourceFile& file, ImportedFile imported, DatabaseContent& content) {
-  if (!options_.keep_duplicates) {
+  if (!options_.keep_duplicates && !options_.takes.contains(file.path)) {
     const DatabaseRows rows = unpacked(imported.clip_rows.front());
     if (const auto same = finder_.find(rows)) {
       leave_out(file, "the same motion as " + known_sources_[static_cast<std::size_t>(*same)]);

@@ -57,6 +57,8 @@ class Importer {
   bool is_repeated(std::size_t file, const SourceHashes& hashes);
   void know_clips(const DatabaseContent& content);
   void know_body(const std::string& actor, const StandardBones& bones);
+  void keep_old_clips(const Pending& pending, const DatabaseContent& content);
+  bool pair(const SourceFile& file, const DatabaseContent& content, ImportedFile& imported);
   void take_in(const SourceFile& file, ImportedFile imported, DatabaseContent& content);
   void sort_doubtful();
   void remove_replaced(DatabaseContent& content, std::size_t num_old_clips);

@@ -81,6 +81,8 @@ class DatabaseReader {
       const auto of_site = [&](const char* name) { return scaled(site_array(site, name), 3); };
       database_.sites_.push_back({of_site("specific_force_pivot"), of_site("specific_force_end"),
                                   of_site("angular_velocity"), of_site("up")});
+      if (has_real_orientation(database_.clips(), site))
+        database_.sites_.back().orientation = scaled(site_array(site, "orientation"), 4);
     }
     for (const char* key : {"skeleton", "clips", "rate_hz"}) own_checksums_ += container_.text(key);
     database_.rows_hash_ = checksum(std::as_bytes(std::span(own_checksums_)));
@@ -89,8 +91,19 @@ class DatabaseReader {
   void check_values() const {
     if (!database_.root_motion_.allFinite()) refuse("a value is not a number");
     if ((database_.contacts_.array() > 1).any()) refuse("a contact is neither 0 nor 1");
-    for (const SiteRows& site : database_.sites_)
+    for (const SiteRows& site : database_.sites_) {
       if (!are_directions(site.gravity_direction)) refuse("a direction has not unit length");
+      if (!are_rotations(site.orientation)) refuse("an orientation has not unit length");
+    }
+  }
+
+  // Or zero.
+  bool are_rotations(const ScaledRows& rows) const {
+    for (Eigen::Index n = 0; n < rows.rows(); ++n) {
+      const float length = rows.row(n).norm();
+      if (length != 0.0F && std::abs(length - 1.0F) > 1e-3F) return false;
+    }
+    return true;
   }
 
   bool are_directions(const ScaledRows& rows) const {

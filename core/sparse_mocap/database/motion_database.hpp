@@ -30,12 +30,15 @@ inline constexpr int height = 3;            // m, root above the floor
 inline constexpr int count = 4;
 }  // namespace root_motion_column
 
-// What the sensors of one site read, in their own axes; three columns each.
+// What the sensors of one site read, in their own axes; three columns each. Of the channels that a
+// clip's take has (Clip::take) it is what real sensors measured, at both ends of the bone alike.
 struct SiteRows {
   ScaledRows specific_force_pivot;  // m/s^2
   ScaledRows specific_force_end;    // m/s^2
   ScaledRows angular_velocity;      // rad/s
   ScaledRows gravity_direction;     // unit vectors against gravity; "up" in the file
+  // R_heading_sensor, w x y z, where Clip::take has it; zero elsewhere. No rows where no clip has.
+  ScaledRows orientation{};
 };
 
 // The knowledge base of Tautges et al. 2011, section 3, read-only: for each frame the pose, the

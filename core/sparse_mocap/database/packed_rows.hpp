@@ -28,6 +28,7 @@ DatabaseRows::Rows unpacked(const PackedArray& array);
 // What the sensors of one site read.
 struct PackedSite {
   PackedArray specific_force_pivot, specific_force_end, angular_velocity, gravity_direction;
+  PackedArray orientation{};  // as SiteRows; no rows where the clip's take does not tell it
 };
 
 // The rows of one clip, packed.

@@ -11,6 +11,7 @@
 #include "sparse_mocap/path_regression/regression.hpp"
 #include "sparse_mocap/retrieval/diagnostics.hpp"
 #include "sparse_mocap/retrieval/extremity_vote.hpp"
+#include "sparse_mocap/retrieval/real_readings.hpp"
 #include "sparse_mocap/retrieval/root_motion.hpp"
 #include "sparse_mocap/retrieval/standing_feet.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
@@ -57,6 +58,7 @@ FrameSolver::FrameSolver(const Config& config, const MethodContext& context)
       signal_rows_(database_signals(*database_, signals_)),
       index_(database_features(*database_, signal_rows_, features_, column_weights_),
              searched_frames(*database_, config.use_tempo_copies, context.excluded_clips)),
+      distance_factors_(distance_factors(*database_, signals_, config.real_preference)),
       config_(config),
       standing_heights_(*database_) {
   const int most_neighbours = static_cast<int>(Config::kNeighbourShare * index_.num_rows());
@@ -81,6 +83,7 @@ void FrameSolver::search(const SignalWindow& window, std::vector<Neighbour>& out
   feature.resize(static_cast<std::size_t>(index_.num_dimensions()));
   feature_at(window, features_, column_weights_, feature);
   index_.search(feature, config_.num_neighbours, out);
+  if (!distance_factors_.empty()) scale_distances(*database_, distance_factors_, out);
 }
 
 void FrameSolver::retrieve(const std::vector<Path>& paths, const SignalWindow& window,

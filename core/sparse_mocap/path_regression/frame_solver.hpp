@@ -61,6 +61,7 @@ class FrameSolver {
   retrieval::FeatureLayout features_, regression_features_;
   retrieval::FeatureRows signal_rows_;  // of the database
   retrieval::KnnIndex index_;
+  std::vector<float> distance_factors_;  // of the clips; empty: all alike
   Config config_;
   retrieval::StandingHeights standing_heights_;
 };

@@ -8,6 +8,7 @@
 #include "sparse_mocap/motion/heading.hpp"
 #include "sparse_mocap/motion/standard_skeleton.hpp"
 #include "sparse_mocap/retrieval/shared_heading.hpp"
+#include "sparse_mocap/sensors/common_yaw.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 
 namespace sparse_mocap::path_regression {
@@ -156,7 +157,7 @@ void place_oriented_limbs(const Skeleton& skeleton, std::span<const retrieval::S
     measured.push_back(sensor.R_shared_site);
     retrieved.push_back(pose.turn(sensor.site->orientation) * sensor.site->R_joint_sensor);
   }
-  const Mat3 R_heading_shared = yaw_rotation(-retrieval::common_yaw_rad(measured, retrieved));
+  const Mat3 R_heading_shared = yaw_rotation(-common_yaw_rad(measured, retrieved));
   for (const Turned& sensor : sensors)
     place(skeleton, *sensor.site, R_heading_shared * sensor.R_shared_site, pose);
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sparse_mocap/retrieval/shared_heading.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
 
 #include "sparse_mocap/base/ordered_work.hpp"
 #include "sparse_mocap/base/quaternions.hpp"
 #include "sparse_mocap/motion/heading.hpp"
+#include "sparse_mocap/sensors/common_yaw.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 
 namespace sparse_mocap::retrieval {
@@ -20,18 +21,6 @@ void put_axes(const Mat3& R, Eigen::Ref<Eigen::RowVectorXf> out) {
 }
 
 }  // namespace
-
-double common_yaw_rad(std::span<const Mat3> measured, std::span<const Mat3> modelled) {
-  // sum a.(R_y b) = cosine * cos(yaw) + sine * sin(yaw)
-  double cosine = 0.0, sine = 0.0;
-  for (std::size_t s = 0; s < measured.size(); ++s) {
-    if (!measured[s].allFinite()) continue;
-    const Mat3 sum = measured[s] * modelled[s].transpose();
-    cosine += sum(0, 0) + sum(2, 2);
-    sine += sum(0, 2) - sum(2, 0);
-  }
-  return std::atan2(sine, cosine);
-}
 
 void share_heading(std::span<const int> sites, Eigen::Ref<Eigen::RowVectorXf> axes) {
   static thread_local std::vector<Mat3> turned, resting;
@@ -75,10 +64,41 @@ void put_axes_row(const Reading& reading, std::span<const Eigen::Index> sensors,
   share_heading(sites, row);
 }
 
+namespace {
+
+// The orientations that real sensors at these sites told, null where there are none.
+std::vector<const ScaledRows*> told_orientations(const MotionDatabase& database,
+                                                 std::span<const int> sites) {
+  std::vector<const ScaledRows*> told;
+  const auto& names = database.site_names();
+  for (const int site : sites) {
+    const auto at = std::find(names.begin(), names.end(), site_of(site).name);
+    const ScaledRows* rows =
+        at == names.end()
+            ? nullptr
+            : &database.site(static_cast<std::size_t>(at - names.begin())).orientation;
+    told.push_back(rows != nullptr && rows->rows() > 0 ? rows : nullptr);
+  }
+  return told;
+}
+
+// R_heading_sensor in a row: as a real sensor told it, else as the pose has it.
+Mat3 orientation_in(const ScaledRows* told, Eigen::Index row, const JointTransforms& pose,
+                    const Site& site) {
+  if (told != nullptr) {
+    const Eigen::Vector4d wxyz = told->row(row).transpose().cast<double>();
+    if (wxyz.norm() > 0.0) return quaternion_of(wxyz).normalized().toRotationMatrix();
+  }
+  return pose.R_world_joint[site.orientation] * site.R_joint_sensor;
+}
+
+}  // namespace
+
 FeatureRows database_axes(const MotionDatabase& database, std::span<const int> sites) {
   constexpr std::size_t kPiece = 256;
   FeatureRows rows(database.num_frames(), kAxesColumns * static_cast<Eigen::Index>(sites.size()));
   const Skeleton& skeleton = database.skeleton();
+  const auto told = told_orientations(database, sites);
   in_pieces(static_cast<std::size_t>(rows.rows()), kPiece, 0, [&](std::size_t frame) {
     const auto at = static_cast<Eigen::Index>(frame);
     const Eigen::VectorXd angles = database.angles().row(at).transpose().cast<double>();
@@ -86,8 +106,7 @@ FeatureRows database_axes(const MotionDatabase& database, std::span<const int> s
     forward_kinematics(skeleton, Vec3::Zero(), angles, pose);
     Eigen::RowVectorXf row(rows.cols());
     for (std::size_t s = 0; s < sites.size(); ++s) {
-      const Site& site = site_of(sites[s]);
-      put_axes(pose.R_world_joint[site.orientation] * site.R_joint_sensor,
+      put_axes(orientation_in(told[s], at, pose, site_of(sites[s])),
                row.segment<kAxesColumns>(static_cast<Eigen::Index>(s) * kAxesColumns));
     }
     share_heading(sites, row);

@@ -25,16 +25,14 @@ void share_heading(std::span<const int> sites, Eigen::Ref<Eigen::RowVectorXf> ax
 // R_frame_sensor of a sensor from its six numbers; NaN where there are none.
 Mat3 rotation_of_axes(const Eigen::Ref<const Eigen::RowVectorXf>& axes);
 
-// The turn about the vertical that brings modelled rotations nearest to measured ones, one each.
-double common_yaw_rad(std::span<const Mat3> measured, std::span<const Mat3> modelled);
-
 // The axes of a reading's sensors (columns of the reading).
 Eigen::RowVectorXf axes_row(const Reading& reading, std::span<const Eigen::Index> sensors,
                             std::span<const int> sites);
 void put_axes_row(const Reading& reading, std::span<const Eigen::Index> sensors,
                   std::span<const int> sites, Eigen::Ref<Eigen::RowVectorXf> row);
 
-// Those that the sensors would have in each frame of the database.
+// Those that the sensors would have in each frame of the database, or had where its clips were
+// performed with real ones.
 FeatureRows database_axes(const MotionDatabase& database, std::span<const int> sites);
 
 }  // namespace sparse_mocap::retrieval

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -342,6 +343,29 @@ TEST(MotionDatabase, KeepsItsContentWhenTheFileIsReplaced) {
   write(encode_database(small_content(4)));
   EXPECT_EQ(database->angles().all(), before);
   EXPECT_EQ(MotionDatabase::open(path)->num_frames(), 4);
+}
+
+TEST(MotionDatabase, RefusesImpossibleTakes) {
+  DatabaseContent content = small_content(20);
+  PackedSite& site = content.clip_rows[0].sites[0];
+  DatabaseRows::Rows turned = DatabaseRows::Rows::Zero(20, 4);
+  turned.col(0).setOnes();
+  site.orientation = packed(turned);
+  content.clips[0].take =
+      ClipTake{"take.csv", "hash", 1.5, 0.9, 1.0, {{content.site_names[0], Channel::orientation}}};
+  EXPECT_EQ(complaint(encode_database(content)), "");
+  EXPECT_EQ(database_of(content)->clips()[0].take, content.clips[0].take);
+  site.orientation = packed(DatabaseRows::Rows(1.1F * turned));
+  EXPECT_TRUE(contains(complaint(encode_database(content)), "an orientation has not unit length"));
+  site.orientation = packed(turned);
+  for (const auto& change : std::vector<std::function<void(ClipTake&)>>{
+           [](ClipTake& take) { take.channels["nowhere"] = Channel::orientation; },
+           [](ClipTake& take) { take.correlation = 7.0; },
+           [](ClipTake& take) { take.coverage = -0.1; }}) {
+    DatabaseContent changed = content;
+    change(*changed.clips[0].take);
+    EXPECT_TRUE(contains(complaint(encode_database(changed)), "has an impossible take"));
+  }
 }
 
 }  // namespace

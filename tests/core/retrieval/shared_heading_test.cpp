@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sparse_mocap/motion/heading.hpp"
+#include "sparse_mocap/sensors/common_yaw.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
 #include "support/synthetic.hpp"
 
@@ -81,6 +82,36 @@ TEST(CommonYaw, IsTheBestTurn) {
   };
   const double found = misfit(common_yaw_rad(measured, modelled));
   for (int k = 0; k < 720; ++k) EXPECT_LE(found, misfit(2.0 * kPi * k / 720.0) + 1e-9);
+}
+
+TEST(DatabaseAxes, AreThoseThatRealSensorsTold) {
+  auto content = testing::content_of(
+      {testing::swaying_motion(testing::template_skeleton(), 1, 20, 25.0)}, 25.0);
+  Random random(3);
+  ClipTake take{"take.csv", "hash", 0.0, 0.9, 1.0, {}};
+  std::vector<DatabaseRows::Rows> told;
+  for (const int site : worn()) {
+    DatabaseRows::Rows& rows = told.emplace_back(20, 4);
+    for (int n = 0; n < 20; ++n) {
+      const Quat q(random_rotation(random, 1.0));
+      rows.row(n) << static_cast<float>(q.w()), static_cast<float>(q.x()),
+          static_cast<float>(q.y()), static_cast<float>(q.z());
+    }
+    content.clip_rows[0].sites[static_cast<std::size_t>(site)].orientation = packed(rows);
+    take.channels[std::string(all_sites()[static_cast<std::size_t>(site)].name)] =
+        Channel::orientation;
+  }
+  content.clips[0].take = take;
+  const auto database = testing::database_of(content);
+  const FeatureRows axes = database_axes(*database, worn());
+  const std::vector<Eigen::Index> sensors{0, 1, 2};
+  for (int n = 0; n < 20; ++n) {
+    Reading reading(3);
+    for (std::size_t s = 0; s < told.size(); ++s)
+      reading.orientation.col(static_cast<Eigen::Index>(s)) =
+          told[s].row(n).transpose().cast<double>();
+    EXPECT_LT((axes.row(n) - axes_row(reading, sensors, worn())).norm(), 1e-3F);
+  }
 }
 
 }  // namespace

@@ -152,6 +152,11 @@ Violations check_database(const MotionDatabase& database) {
     check_scaled("up", site.gravity_direction, 3);
     const Eigen::ArrayXf lengths = site.gravity_direction.all().rowwise().norm();
     checks.require(((lengths - 1.0F).abs() < 2e-3F).all(), "a direction has not unit length");
+    if (site.orientation.rows() == 0) continue;
+    check_scaled("orientation", site.orientation, 4);
+    const Eigen::ArrayXf turns = site.orientation.all().rowwise().norm();
+    checks.require((turns == 0.0F || (turns - 1.0F).abs() < 2e-3F).all(),
+                   "an orientation has not unit length");
   }
   int frame = 0;
   for (std::size_t c = 0; c < database.clips().size(); ++c) {

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Teaching the motion database: labels, tooltips and reports."""
+
+TEACHING = {
+    "Teach": "Anlernen",
+    "Teaching the motion database": "Die Bewegungsdatenbank wird angelernt",
+    "Motion": "Bewegung",
+    "Choose Motion": "Bewegung wählen",
+    "Choose Take": "Aufnahme wählen",
+    "Align by a clap": "An einem Klatschen ausrichten",
+    "Taught": "Angelernt",
+    "Begins at": "Beginnt bei",
+    "very good": "sehr gut",
+    "Choose a motion, and the take that your sensors recorded during it": (
+        "Eine Bewegung wählen und die Aufnahme, die die Sensoren dabei gemacht haben"
+    ),
+    "Add a movement of yours together with what your sensors measured during it, so that "
+    "later takes of such movements come out better": (
+        "Eine eigene Bewegung zusammen mit dem hinzufügen, was die Sensoren dabei gemessen haben, "
+        "damit spätere Aufnahmen solcher Bewegungen besser gelingen"
+    ),
+    "The motion file (.bvh, .amc, .npz, .mvnx) of the performance, for example from video": (
+        "Die Bewegungsdatei (.bvh, .amc, .npz, .mvnx) der Aufführung, zum Beispiel aus einem Video"
+    ),
+    "The take (.csv) that the sensors recorded during the performance": (
+        "Die Aufnahme (.csv), die die Sensoren während der Aufführung gemacht haben"
+    ),
+    "Motion and take have a clap or jump in common: align them by it. "
+    "Off: they are aligned by comparing all readings": (
+        "Bewegung und Aufnahme haben ein Klatschen oder einen Sprung gemeinsam: daran ausrichten. "
+        "Aus: durch Vergleichen aller Messwerte ausrichten"
+    ),
+    "When the clap begins, in seconds of the take": (
+        "Wann das Klatschen beginnt, in Sekunden der Aufnahme"
+    ),
+    "When the clap is over, in seconds of the take": (
+        "Wann das Klatschen vorbei ist, in Sekunden der Aufnahme"
+    ),
+    "Choose the motion file of the performance": "Die Bewegungsdatei der Aufführung wählen",
+    "Choose the take (.csv) that was recorded during the performance": (
+        "Die Aufnahme (.csv) wählen, die während der Aufführung gemacht wurde"
+    ),
+    "Write a new motion database that also has this motion and what the sensors measured "
+    "during it, and use it. The one in use stays as it is": (
+        "Eine neue Bewegungsdatenbank schreiben, die auch diese Bewegung enthält und was die "
+        "Sensoren dabei gemessen haben, und sie benutzen. Die bisherige bleibt, wie sie ist"
+    ),
+    "Agreement": "Übereinstimmung",
+    'Taught "{name}": the agreement of motion and take is {agreement}': (
+        "„{name}“ angelernt; Übereinstimmung von Bewegung und Aufnahme: {agreement}"
+    ),
+    "Choose the motion file that was performed first": (
+        "Zuerst die Bewegungsdatei der Aufführung wählen"
+    ),
+    "Choose the take (.csv) that was recorded with it first": (
+        "Zuerst die Aufnahme (.csv) wählen, die dabei gemacht wurde"
+    ),
+    "The clap must end after it begins: change its times": (
+        "Das Klatschen muss nach seinem Beginn enden: die Zeiten ändern"
+    ),
+    "acceleration stays virtual at {sites}": "virtuell bleibt die Beschleunigung an {sites}",
+    "turning (no gyroscope) stays virtual at {sites}": (
+        "virtuell bleibt die Drehung (kein Gyroskop) an {sites}"
+    ),
+    "orientation stays virtual at {sites}": "virtuell bleibt die Lage an {sites}",
+    "{take} covers only {share} % of {motion}: cut the motion to what was recorded, or record all "
+    "of it": (
+        "{take} deckt nur {share} % von {motion} ab: die Bewegung auf das Aufgenommene kürzen, "
+        "oder alles aufnehmen"
+    ),
+    "{take} does not fit {motion}: what the sensors measured agrees with the motion by {found}, at "
+    "least {least} is needed; worst is {site} with {worst}: check that both show the same "
+    "performance and that each sensor is named after where it was worn; if the sensors' clocks "
+    "differ, clap once and say when": (
+        "{take} passt nicht zu {motion}: die Messwerte stimmen zu {found} mit der Bewegung "
+        "überein, nötig ist mindestens {least}; am schlechtesten {site} mit {worst}: prüfen, ob "
+        "beide dieselbe Aufführung zeigen und jeder Sensor nach seinem Ort benannt ist; wenn die "
+        "Uhren der Sensoren abweichen, einmal klatschen und sagen, wann"
+    ),
+    "{motion} fits {take} at several times (by {first} and {second}), as when a movement "
+    "repeats: clap or jump once in both and say when": (
+        "{motion} passt an mehreren Stellen zu {take} (zu {first} und {second}), wie bei einer "
+        "Bewegung, die sich wiederholt: in beiden einmal klatschen oder springen und sagen, wann"
+    ),
+}

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Teaching in the sidebar: a motion, its take, and what came of the last ones."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.types import Context, UILayout
+
+from ..scene.settings import settings_of
+from ..scene.translations import tr, tr_line
+from ..session.teaching import TEACHING, last_taught
+from . import text
+from .step import action_button, job_is_running
+
+
+def draw_teaching(layout: UILayout, context: Context) -> None:
+    """A box that is folded until it is needed."""
+    settings = settings_of(context.scene)
+    teaching = settings.teaching
+    box = layout.box()
+    is_open = teaching.is_open or job_is_running(TEACHING)
+    row = box.row()
+    row.alignment = "LEFT"
+    icon = "TRIA_DOWN" if is_open else "TRIA_RIGHT"
+    row.prop(teaching, "is_open", icon=icon, emboss=False)
+    if not is_open:
+        return
+    column = box.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    for name in ("motion", "take"):
+        row = column.row(align=True)
+        row.prop(teaching, name)
+        row.operator(f"sparse_mocap.choose_taught_{name}", text="", icon="FILE_FOLDER")
+    column.prop(teaching, "has_clap")
+    if teaching.has_clap:
+        column.prop(teaching, "clap_from_s")
+        column.prop(teaching, "clap_to_s")
+    is_ready = bool(teaching.motion and teaching.take)
+    action_button(box, "sparse_mocap.teach", "IMPORT", TEACHING, is_ready=is_ready)
+    if not is_ready:
+        hint = "Choose a motion, and the take that your sensors recorded during it"
+        text.paragraph(box, context, hint, icon="INFO")
+    _outcome(box, context, bpy.path.abspath(settings.database))
+
+
+def _outcome(box: UILayout, context: Context, database: str) -> None:
+    """How well the last motion and its take matched, if the database in use has them."""
+    taught = last_taught[0] if last_taught else None
+    if taught is None or taught.path != database:
+        return
+    text.facts(
+        box,
+        [
+            ("Taught", taught.name),
+            ("Agreement", f"{tr(taught.quality)} ({taught.correlation:.2f})"),
+            ("Begins at", f"{taught.begin_s:.2f} s"),
+        ],
+    )
+    for note in taught.notes:
+        text.paragraph(box, context, tr_line(note), icon="INFO")
