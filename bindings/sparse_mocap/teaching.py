@@ -169,8 +169,8 @@ def teach_database(
 ) -> TaughtClip:
     """Adds a motion file together with the take that sensors recorded during it.
 
-    The motion's rows keep what the sensors measured, in place of what virtual ones read, and are
-    preferred when a take is reconstructed. Channels and locations that the take lacks stay virtual.
+    The motion's rows keep what the sensors measured, in place of what virtual ones read, so that
+    takes of sensors that are worn alike find them. What the take lacks stays virtual.
     A motion that is in the database already is replaced. Further options are as for
     add_to_database(); errors as for it and for pair_take(), the database is untouched then.
     """

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from sparse_mocap import (
+    ConfigError,
     Motion,
     MotionDatabase,
     NoiseModel,
@@ -38,6 +39,7 @@ from sparse_mocap.evaluation.comparison import Estimate, Truth
 from sparse_mocap.evaluation.protocol import is_copy
 from sparse_mocap.labels import find_labels
 from sparse_mocap.motion_files import read_options
+from sparse_mocap.reconstruction import sensor_recordings, used_sensors
 from sparse_mocap.rotations import from_rotation_vectors, product
 from sparse_mocap.take import SensorRecord, Take
 from sparse_mocap.teaching import Pairing, pair_take
@@ -159,6 +161,7 @@ class Lessons:
         self.folder, self.channels, self.worn = folder, channels, worn
         self.base = folder / "base.smdb"
         self.pairings: list[Pairing] = []
+        self.refused: list[str] = []
         if not self.base.exists():
             build_database([source], self.base, mirror=True)
         self.own = own_clips(source)
@@ -188,13 +191,23 @@ class Lessons:
         return path, one
 
     def _paired(self, file: Path, one: Own) -> Any:
-        take = self.folder / f"{one.teacher.stem}.csv"
-        write_take(take, recorded(one.teacher, one.actor, self.worn, self.channels))
+        """The take as the database takes it; aligned by a clap where it cannot be without."""
+        path = self.folder / f"{one.teacher.stem}.csv"
+        take = recorded(one.teacher, one.actor, self.worn, self.channels)
+        write_take(path, take)
         try:
-            pairing, paired = pair_take(file, take)
-        except _core.ConfigError as error:
-            print(f"refused: {error}", flush=True)
-            raise
+            pairing, paired = pair_take(file, path)
+        except ConfigError as error:
+            self.refused.append(str(error))
+            sensors = used_sensors(take, None, None, True)
+            return _core.PairedTake(
+                path.name,
+                file.name,
+                sensors,
+                sensor_recordings(take),
+                begin_s=noise_presets()["consumer"].latency_s,
+                correlation=0.0,
+            )
         self.pairings.append(pairing)
         return paired
 
@@ -209,7 +222,12 @@ def allowed(database: MotionDatabase, one: Own, own: Sequence[str]) -> list[int]
 
 
 def error_cm(
-    database: MotionDatabase, test: Path, take: Take, hidden: Sequence[int], options: Any, best: bool
+    database: MotionDatabase,
+    test: Path,
+    take: Take,
+    hidden: Sequence[int],
+    options: Any,
+    best: bool,
 ) -> float:
     """The error of a reconstruction of the test clip."""
     clip = next(c for c in database.clips if c.source == test.name and not is_copy(c))
@@ -248,7 +266,7 @@ ROWS = {
 }
 
 
-def tested(
+def errors_of(
     lessons: Lessons,
     clips: Sequence[tuple[Own, Path]],
     take_worn: Worn,
@@ -271,9 +289,7 @@ def tested(
                         (
                             row,
                             best,
-                            workers.submit(
-                                error_cm, database, test, take, hidden, options, best
-                            ),
+                            workers.submit(error_cm, database, test, take, hidden, options, best),
                         )
                     )
         for row, best, job in jobs:
@@ -312,7 +328,7 @@ def main() -> None:
         ):
             lessons = Lessons(arguments.source, folder, channels, worn)
             clips = [(one, one.test) for one in lessons.own][:: arguments.every]
-            found = tested(lessons, clips, replace(worn, strapped=anew), list(ROWS))
+            found = errors_of(lessons, clips, replace(worn, strapped=anew), list(ROWS))
             text += [f"## {name}, {title} ({len(clips)} clips)", "", *table(found), ""]
             print("\n".join(text[-len(found) - 4 :]), flush=True)
     arguments.output.write_text("\n".join(text), encoding="utf-8")
@@ -326,7 +342,7 @@ def tune(source: Path, folder: Path, every: int) -> None:
         rows = [row for row in ROWS if "with their takes" in row]
         for preference in PREFERENCES:
             for strapped in (0, 1):
-                found = tested(
+                found = errors_of(
                     lessons,
                     clips,
                     Worn(strapped=strapped),

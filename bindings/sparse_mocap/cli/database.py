@@ -148,7 +148,7 @@ def build(
 @click.option(
     "--take", "take_path", metavar="TAKE.csv", type=FilePath,
     help="What sensors recorded during the motion (one file): the database keeps these readings"
-    " and prefers them.",
+    " in place of virtual ones.",
 )  # fmt: skip
 @click.option(
     "--clap", type=Span(),

@@ -94,8 +94,9 @@ const OptionTable<Config>& options() {
                   "what a unit of gravity direction counts in the search")
           .number("orientation_weight_mps2", &Config::orientation_weight_mps2, 0.0, 1e3,
                   "what a unit of the axes of sensors with an orientation counts in the search")
-          .number("real_preference", &Config::real_preference, 0.0, 0.99,
-                  "how much nearer frames count whose readings real sensors measured")
+          .number("real_preference", &Config::real_preference, -10.0, 0.99,
+                  "how much nearer frames count whose readings real sensors measured; below 0: "
+                  "farther")
           .flag("use_tempo_copies", &Config::use_tempo_copies,
                 "whether copies of the clips at other tempos are searched")
           .number("penalty", &Config::penalty, 0.0, 100.0,

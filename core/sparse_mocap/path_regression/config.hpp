@@ -18,7 +18,7 @@ struct Config {
   double gravity_weight_mps2 = 9.81;      // what a unit of gravity direction counts there
   double orientation_weight_mps2 = 12.0;  // and what a unit of a sensor's axes counts
   // How much nearer frames count whose readings real sensors measured.
-  double real_preference = 0.3;
+  double real_preference = 0.0;
   bool use_tempo_copies = true;  // search clips at other tempos than performed as well
   double penalty = 0.8;          // of an unmatched reading, in distances of its farthest neighbour
   double forgetting = 0.9;       // how much a reading counts one reading later
