@@ -17,9 +17,7 @@ from ._core_types import Path, ProgressCallback
 class ClipTake:
     """What real sensors measured while a clip was performed.
 
-    The clip's rows hold it in place of what virtual sensors read. begin_s: when the clip begins, on
-    the take's clock; correlation: see align_take; coverage: the part of the rows with real
-    readings; channels: of CHANNEL_NAMES, by the sensors' sites.
+    The clip's rows hold it in place of what virtual sensors read.
     """
 
     name: str
@@ -155,9 +153,6 @@ class TakeAlignment:
     """Where in a take a motion was performed, and how well both agree.
 
     Correlations are 1 at most, however the sensors are mounted; unrelated movements have about 0.5.
-    begin_s: when the motion begins, on the take's clock; correlation: of measured with virtual
-    readings, over all sensors; runner_up: the best one at another time; coverage: the part of the
-    motion during which the take was recorded; sensor_correlations: one a sensor.
     """
 
     begin_s: float

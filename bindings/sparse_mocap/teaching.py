@@ -187,10 +187,12 @@ def teach_database(
     )
     report = add_to_database(database, [motion], output, takes={motion: paired}, **options)
     opened = _core.MotionDatabase(database if output is None else output)
-    clip = next(
-        clip for clip in opened.clips if clip.take is not None and clip.take.hash == paired.hash
+    held = next(
+        clip.take
+        for clip in opened.clips
+        if clip.take is not None and clip.take.hash == paired.hash
     )
-    real = dict(clip.take.channels)
+    real = dict(held.channels)
     return TaughtClip(pairing, report, real, _notes(real))
 
 

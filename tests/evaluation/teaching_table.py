@@ -11,6 +11,7 @@ other clips than those that are reported; --every N takes every N-th clip.
 from __future__ import annotations
 
 import argparse
+import os
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -173,7 +174,9 @@ class Lessons:
         path = self.folder / name
         if not path.exists():
             files = [self._taught(one, wrong) for one in self.own if one.actor == actor]
-            takes = {file: self._paired(file, one) for file, one in files} if paired else {}
+            takes: dict[str | os.PathLike[str], _core.PairedTake] = {}
+            if paired:
+                takes = {file: self._paired(file, one) for file, one in files}
             sources = [file for file, _ in files]
             labels, _ = find_labels(sources, (), None)
             _core.add_to_database(
@@ -190,7 +193,7 @@ class Lessons:
             write_bvh(path, disturbed(motion, sum(map(ord, path.stem))))
         return path, one
 
-    def _paired(self, file: Path, one: Own) -> Any:
+    def _paired(self, file: Path, one: Own) -> _core.PairedTake:
         """The take as the database takes it; aligned by a clap where it cannot be without."""
         path = self.folder / f"{one.teacher.stem}.csv"
         take = recorded(one.teacher, one.actor, self.worn, self.channels)

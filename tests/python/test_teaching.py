@@ -34,7 +34,7 @@ OFFSET_MPS2 = (0.3, -0.2, 0.25)
 def rotated(rotations: Floats, vectors: Floats) -> Floats:
     """Vectors (T, 3) turned by rotations (T, 4), w x y z."""
     padded = np.concatenate([np.zeros((len(vectors), 1)), vectors], axis=1)
-    return product(product(rotations, padded), inverse(rotations))[:, 1:]
+    return np.asarray(product(product(rotations, padded), inverse(rotations))[:, 1:], np.float64)
 
 
 def performed(path: Path, begin_s: float = 0.0, *, gyroscopes: bool = False) -> Take:
@@ -48,16 +48,17 @@ def performed(path: Path, begin_s: float = 0.0, *, gyroscopes: bool = False) -> 
     for site, joint in SITES.items():
         track = ends[:, names.index(joint)]
         acceleration = np.gradient(np.gradient(track, axis=0), axis=0) / motion.frame_time_s**2
-        orientation = ideal.sensors[site].orientation[: len(times_s)]
+        orientation = np.asarray(ideal.sensors[site].orientation)[: len(times_s)]
         mounted = from_rotation_vectors(np.array([MOUNTED[site]]))
         turned = product(orientation, np.repeat(mounted, len(times_s), axis=0))
         world = acceleration + np.array([0.0, sm.GRAVITY_MPS2, 0.0])
         force = rotated(inverse(turned), world) + np.array(OFFSET_MPS2)
         rates = None
         if gyroscopes:
-            steps = product(inverse(turned[:-1]), turned[1:])
+            steps = np.asarray(product(inverse(turned[:-1]), turned[1:]), np.float64)
             steps *= np.sign(steps[:, :1])
-            rates = np.concatenate([2.0 * steps[:, 1:], np.zeros((1, 3))]) / motion.frame_time_s
+            turns = np.concatenate([2.0 * steps[:, 1:], np.zeros((1, 3))])
+            rates = np.asarray(turns / motion.frame_time_s, np.float64)
         sensors[site] = SensorRecord(times_s, force, rates)
     return Take(sensors)
 
