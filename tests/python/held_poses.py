@@ -99,14 +99,20 @@ def spans(lead_s: float, ready_s: float, hold_s: float) -> list[tuple[str, Span]
     ]
 
 
-def held(skeleton: Skeleton, lead_s: float, ready_s: float, hold_s: float) -> Motion:
-    """From pose to pose; the pelvis stays where it is."""
+def held(
+    skeleton: Skeleton, lead_s: float, ready_s: float, hold_s: float, missed_deg: float = 0.0
+) -> Motion:
+    """From pose to pose, each joint off by missed_deg or so; the pelvis stays where it is."""
+    random = np.random.default_rng(2)
     times, poses = [0.0], [np.array(calibration_poses()[0][2])]
-    for (_, (begin, end)), (_, _, rotations) in zip(
+    for (_, (begin, end)), (_, _, shown) in zip(
         spans(lead_s, ready_s, hold_s), calibration_poses(), strict=True
     ):
+        missed = np.radians(missed_deg) / np.sqrt(3) * random.normal(size=(len(shown), 3))
+        missed[0] = 0.0
+        rotations = product(np.array(shown), from_rotation_vectors(missed))
         times += [begin, end]
-        poses += [np.array(rotations), np.array(rotations)]
+        poses += [rotations, rotations]
     wanted = np.arange(0.0, times[-1] + 2.0, 1.0 / RATE_HZ)
     stacked = np.stack(poses)
     joints = [interpolated(wanted, np.array(times), stacked[:, j]) for j in range(stacked.shape[1])]
@@ -114,10 +120,15 @@ def held(skeleton: Skeleton, lead_s: float, ready_s: float, hold_s: float) -> Mo
     return Motion(skeleton, 1.0 / RATE_HZ, root, np.stack(joints, axis=1))
 
 
-def recorded(lead_s: float, ready_s: float, hold_s: float) -> Take:
-    """The performer's trackers while the poses are held."""
-    motion = held(performer().skeleton, lead_s, ready_s, hold_s)
-    return planted().worn(simulated(motion, SITES, RATE_HZ, with_position=True))
+def ideal(lead_s: float, ready_s: float, hold_s: float, missed_deg: float = 0.0) -> Take:
+    """What trackers would say that sit where and as they should while the poses are held."""
+    motion = held(performer().skeleton, lead_s, ready_s, hold_s, missed_deg)
+    return simulated(motion, SITES, RATE_HZ, with_position=True)
+
+
+def recorded(lead_s: float, ready_s: float, hold_s: float, missed_deg: float = 0.0) -> Take:
+    """What the performer's trackers say meanwhile."""
+    return planted().worn(ideal(lead_s, ready_s, hold_s, missed_deg))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from held_poses import SITES, performer, planted, recorded, spans
+from held_poses import SITES, ideal, performer, planted, recorded, spans
 from numpy.typing import NDArray
 from sparse_mocap import (
     ConfigError,
@@ -26,6 +26,7 @@ from sparse_mocap.calibration_file import read_calibration, write_calibration
 from sparse_mocap.cli.app import run
 from sparse_mocap.evaluation import excluded_clips, performed
 from sparse_mocap.pose_calibration import PoseCalibration, calibrate_by_poses
+from sparse_mocap.readings import SensorInput, all_readings
 
 TIMES = (0.5, 0.5, 0.5)
 CLIP = "ada_walk_01"
@@ -72,6 +73,34 @@ def test_bones_that_the_poses_tell_are_found(found: PoseCalibration) -> None:
     assert any("length of" in note and "ltibia" in note for note in found.notes)
     assert found.imitation_deg < 2.5
     assert max(missed for _, missed in found.missed_deg) < 3.0
+
+
+def test_a_performer_who_misses_the_poses_is_noticed() -> None:
+    missed = calibrate_by_poses(recorded(*TIMES, missed_deg=5.0), spans(*TIMES))
+    assert 2.5 < missed.imitation_deg < 8.0
+    for index, site in enumerate(SITES):
+        R = missed.calibration.sensors[site].R_site_sensor
+        assert angle_deg(R @ planted().matrices()[index].T) < 10.0
+
+
+def test_positions_are_seen_from_where_trackers_should_sit(take: Take) -> None:
+    """Whatever the straps: as trackers would say that sit where they should."""
+    trackers = planted()
+
+    def positions(worn: Take, is_known: bool) -> Floats:
+        inputs = [
+            SensorInput(
+                site, ["specific_force", "orientation", "position"],
+                R_site_sensor=trackers.matrices()[index] if is_known else None,
+                offset_m=trackers.offset_m[index] if is_known else None,
+            )
+            for index, site in enumerate(SITES)
+        ]  # fmt: skip
+        return np.asarray(all_readings(worn, inputs, 25.0).position)
+
+    wanted = positions(ideal(*TIMES), False)
+    np.testing.assert_allclose(positions(take, True), wanted, atol=1e-3)
+    assert np.nanmean(np.abs(positions(take, False) - wanted)) > 0.01
 
 
 def test_alike_poses_are_said(take: Take) -> None:

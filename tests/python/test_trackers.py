@@ -217,3 +217,32 @@ def test_the_default_method_places_limbs_as_orientations_say(
     together = errors(("specific_force", "orientation"))
     assert together < 0.95 * alone
     assert errors(("specific_force", "orientation"), 2.5) == pytest.approx(together, abs=0.15)
+
+
+@pytest.mark.parametrize("best_quality", [False, True])
+def test_the_default_method_turns_limbs_that_no_motion_tells(
+    database: MotionDatabase, library: Path, best_quality: bool
+) -> None:
+    """A kick among walks and squats: shanks and forearm are where their trackers say."""
+    kick = performed(library / "ada_kickleft_01.bvh", sites=SITES)
+    found = reconstruct(
+        kick.seen(all_give(("specific_force", "orientation"))),
+        database,
+        best_quality=best_quality,
+        excluded_clips=[i for i, clip in enumerate(database.clips) if "kick" in clip.name],
+    )
+    limbs = (("lfemur", "ltibia"), ("rfemur", "rtibia"), ("lhumerus", "lradius"))
+    assert np.mean([_limb_angle_deg(found, kick, *limb) for limb in limbs]) < 11.0
+
+
+def _limb_angle_deg(found: Reconstruction, performance: Performance, near: str, far: str) -> float:
+    """Returns the mean angle between a limb, from joint end to joint end, and the true one."""
+    motion = found.motion.without_extremities()
+    ends = [list(motion.skeleton.names).index(name) for name in (near, far)]
+    truth = np.asarray(performance.motion.resampled(found.rate_hz).joint_positions("heading"))
+    ours = np.asarray(motion.joint_positions("heading"))
+    count = min(len(truth), len(ours))
+    limbs = [joints[:count, ends[1]] - joints[:count, ends[0]] for joints in (truth, ours)]
+    limbs = [limb / np.linalg.norm(limb, axis=1, keepdims=True) for limb in limbs]
+    cosines = (limbs[0] * limbs[1]).sum(axis=1)
+    return float(np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0))).mean())
