@@ -235,9 +235,8 @@ def error_cm(
     """The error of a reconstruction of the test clip."""
     clip = next(c for c in database.clips if c.source == test.name and not is_copy(c))
     motion, _ = to_standard(read_motion(test)[0])
-    truth = Truth(
-        database, clip, to_standard(motion, database.skeleton)[0].resampled(database.rate_hz)
-    )
+    performed = to_standard(motion, database.skeleton)[0].resampled(database.rate_hz)
+    truth = Truth(database, clip, performed, np.arange(performed.num_frames) / database.rate_hz)
     solved = reconstruct(
         take, database, best_quality=best, excluded_clips=hidden, options=options or {}
     )
