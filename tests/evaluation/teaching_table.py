@@ -242,7 +242,10 @@ def error_cm(
     )
     found, _ = to_standard(solved.motion.without_extremities(), database.skeleton)
     estimate = Estimate(
-        "", np.asarray(solved.readings.times_s), np.asarray(found.joint_positions("heading"))
+        "",
+        np.asarray(solved.readings.times_s),
+        np.asarray(found.joint_positions("heading")),
+        np.asarray(found.joint_positions("root")),
     )
     return truth.compared(estimate).mean_cm
 
