@@ -58,28 +58,6 @@ TEACHING = {
     "The clap must end after it begins: change its times": (
         "Das Klatschen muss nach seinem Beginn enden: die Zeiten ändern"
     ),
-    "acceleration stays virtual at {sites}": "virtuell bleibt die Beschleunigung an {sites}",
-    "turning (no gyroscope) stays virtual at {sites}": (
-        "virtuell bleibt die Drehung (kein Gyroskop) an {sites}"
-    ),
-    "orientation stays virtual at {sites}": "virtuell bleibt die Lage an {sites}",
-    "{take} covers only {share} % of {motion}: cut the motion to what was recorded, or record all "
-    "of it": (
-        "{take} deckt nur {share} % von {motion} ab: die Bewegung auf das Aufgenommene kürzen, "
-        "oder alles aufnehmen"
-    ),
-    "{take} does not fit {motion}: what the sensors measured agrees with the motion by {found}, at "
-    "least {least} is needed; worst is {site} with {worst}: check that both show the same "
-    "performance and that each sensor is named after where it was worn; if the sensors' clocks "
-    "differ, clap once and say when": (
-        "{take} passt nicht zu {motion}: die Messwerte stimmen zu {found} mit der Bewegung "
-        "überein, nötig ist mindestens {least}; am schlechtesten {site} mit {worst}: prüfen, ob "
-        "beide dieselbe Aufführung zeigen und jeder Sensor nach seinem Ort benannt ist; wenn die "
-        "Uhren der Sensoren abweichen, einmal klatschen und sagen, wann"
-    ),
-    "{motion} fits {take} at several times (by {first} and {second}), as when a movement "
-    "repeats: clap or jump once in both and say when": (
-        "{motion} passt an mehreren Stellen zu {take} (zu {first} und {second}), wie bei einer "
-        "Bewegung, die sich wiederholt: in beiden einmal klatschen oder springen und sagen, wann"
-    ),
+    "{path} does not exist: choose another file": "{path} gibt es nicht: eine andere Datei wählen",
+    "{name} is not a {endings} file": "{name} ist keine Datei der Art {endings}",
 }

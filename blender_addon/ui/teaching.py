@@ -12,6 +12,11 @@ from ..session.teaching import TEACHING, last_taught
 from . import text
 from .step import action_button, job_is_running
 
+CHOOSERS = {
+    "motion": "sparse_mocap.choose_taught_motion",
+    "take": "sparse_mocap.choose_taught_take",
+}
+
 
 def draw_teaching(layout: UILayout, context: Context) -> None:
     """A box that is folded until it is needed."""
@@ -28,10 +33,10 @@ def draw_teaching(layout: UILayout, context: Context) -> None:
     column = box.column()
     column.use_property_split = True
     column.use_property_decorate = False
-    for name in ("motion", "take"):
+    for name, chooser in CHOOSERS.items():
         row = column.row(align=True)
         row.prop(teaching, name)
-        row.operator(f"sparse_mocap.choose_taught_{name}", text="", icon="FILE_FOLDER")
+        row.operator(chooser, text="", icon="FILE_FOLDER")
     column.prop(teaching, "has_clap")
     if teaching.has_clap:
         column.prop(teaching, "clap_from_s")

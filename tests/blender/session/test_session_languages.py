@@ -113,6 +113,7 @@ def known_texts() -> list[str]:
         *pose_guide.POSE_TEXTS.values(),
         *(pose_guide.READY, pose_guide.HOLD, pose_guide.MISSED),
         *(pose_guide.MIRRORED, pose_guide.FROM_RIGHT),
+        "very good",  # how well a motion and its take agree
         *("searching", "fitting", "smoothing"),  # what the core says it is doing
         *("finding how the sensor is worn", "placing the feet"),
         *mapping.LABELS.values(),
