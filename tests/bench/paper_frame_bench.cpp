@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// One frame of the paper's method, stage by stage as in its Table III, on the largest database of
-// recorded motion (the paper: 600,000 frames) with its K = 4096 and I = 256; and the graph of paths
-// beside one that is made anew for each reading from the last M of them.
+// One frame of the paper's method, stage by stage as in its Table III, on a database of recorded
+// motion that is about as large as the paper's, with its K = 4096 and I = 256; and the graph of
+// paths beside one that is made anew for each reading from the last M of them.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -30,9 +31,10 @@ using tautges2011::Energy;
 constexpr int kNeighbours = 4096, kPaths = 256;
 constexpr std::size_t kReadings = 400;
 
-std::shared_ptr<const MotionDatabase> database() {
-  return recorded_database(recorded_sizes().back());
-}
+// Of about as many frames as the paper's, 600,000.
+constexpr const char* kSize = "680k";
+
+std::shared_ptr<const MotionDatabase> database() { return recorded_database(kSize); }
 
 retrieval::FeatureRows rows() { return retrieval::database_signals(*database(), paper_signals()); }
 
@@ -167,7 +169,8 @@ void by_ceres_lm(benchmark::State& state) {
 }
 
 const bool is_registered = [] {
-  if (recorded_sizes().empty()) return false;
+  const auto sizes = recorded_sizes();
+  if (std::find(sizes.begin(), sizes.end(), kSize) == sizes.end()) return false;
   const auto add = [](const char* name, void (*run)(benchmark::State&), int iterations) {
     return benchmark::RegisterBenchmark(name, run)
         ->Unit(benchmark::kMillisecond)

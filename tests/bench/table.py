@@ -158,10 +158,10 @@ def main(paths: list[Path], store: bool, plot: Path | None = None) -> None:
     now = {name: round(time_ms(result), 6) for name, result in results.items()}
     if plot is not None and growth(now):
         plot_growth(now, plot)
-    if store:
-        STORED.write_text(json.dumps(now, indent=2) + "\n", encoding="utf-8")
     stored = json.loads(STORED.read_text(encoding="utf-8")) if STORED.exists() else {}
     found = slower(now, stored)
+    if store:
+        STORED.write_text(json.dumps(now, indent=2) + "\n", encoding="utf-8")
     print("\nSlower than stored:" if found else "\nNothing is slower than stored.")
     for name, ratio in sorted(found.items(), key=lambda pair: -pair[1]):
         print(f"{name:44}{ratio:8.2f} times")

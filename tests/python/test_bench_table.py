@@ -56,3 +56,21 @@ def test_shows_times_beside_baselines(tmp_path: Path, capsys: pytest.CaptureFixt
     ]  # fmt: skip
     ratio = next(line for line in lines if "nanoflann" in line and "sparse_mocap" in line)
     assert ratio.split()[-1] == "4.00"
+
+
+def test_storing_tells_what_got_slower_than_before(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stored = tmp_path / "baseline.json"
+    stored.write_text(json.dumps(STORED), encoding="utf-8")
+    monkeypatch.setattr(table, "STORED", stored)
+    now = STORED | {"graph": 4.0}
+    results = [
+        {"name": name, "cpu_time": ms, "real_time": ms, "time_unit": "ms"}
+        for name, ms in now.items()
+    ]
+    path = tmp_path / "bench.json"
+    path.write_text(json.dumps({"benchmarks": results}), encoding="utf-8")
+    table.main([path], store=True)
+    assert "graph" in capsys.readouterr().out.partition("Slower than stored:")[2]
+    assert json.loads(stored.read_text(encoding="utf-8")) == now
