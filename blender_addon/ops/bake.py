@@ -15,15 +15,15 @@ from ..scene.nla import push_to_nla
 from ..scene.performance import facts_of, perform_steps, performed_action, replace_actions
 from ..scene.settings import settings_of
 from ..scene.targets import own_figure, placement_of
-from ..scene.translations import tr_line
 from ..session.bake import PlacedTake, place_job
-from ..session.errors import InputError, one_line
+from ..session.errors import InputError
 from ..session.job import Job
 from ..session.match import poor_parts
 from ..session.reconstruct import kept
 from ..session.steps import Steps
 from .job_operator import JobOperator
 from .live import leave_live
+from .now_operator import NowOperator
 
 
 def _action(context: Context) -> Action:
@@ -77,27 +77,7 @@ class SPARSEMOCAP_OT_update_action(JobOperator, Operator):
         return f'"{armature.animation_data.action.name}" is up to date'
 
 
-class _ActionOperator:
-    """Mix-in: act() does the work at once; its message or error is reported in one line."""
-
-    report: Any  # the operator's own
-
-    def act(self, context: Context) -> str:
-        """Do it and return one line that says so. Raises InputError."""
-        raise NotImplementedError
-
-    def execute(self, context: Context) -> set[str]:
-        """Call act() and report."""
-        try:
-            message = self.act(context)
-        except Exception as error:
-            self.report({"ERROR"}, tr_line(one_line(error)))
-            return {"CANCELLED"}
-        self.report({"INFO"}, tr_line(message))
-        return {"FINISHED"}
-
-
-class SPARSEMOCAP_OT_push_to_nla(_ActionOperator, Operator):
+class SPARSEMOCAP_OT_push_to_nla(NowOperator, Operator):
     """Put the character's take into the NLA, as a strip of its own."""
 
     bl_idname = "sparse_mocap.push_to_nla"
@@ -112,7 +92,7 @@ class SPARSEMOCAP_OT_push_to_nla(_ActionOperator, Operator):
         return f'"{action.name}" is a strip in the NLA'
 
 
-class SPARSEMOCAP_OT_compare(_ActionOperator, Operator):
+class SPARSEMOCAP_OT_compare(NowOperator, Operator):
     """Play another action on a ghost of the character."""
 
     bl_idname = "sparse_mocap.compare"
@@ -140,7 +120,7 @@ class SPARSEMOCAP_OT_compare(_ActionOperator, Operator):
         return f'"{ghost.name}" plays "{action.name}"'
 
 
-class SPARSEMOCAP_OT_stop_comparing(_ActionOperator, Operator):
+class SPARSEMOCAP_OT_stop_comparing(NowOperator, Operator):
     """Remove the ghost."""
 
     bl_idname = "sparse_mocap.stop_comparing"
@@ -156,7 +136,7 @@ class SPARSEMOCAP_OT_stop_comparing(_ActionOperator, Operator):
         return "The ghost is removed"
 
 
-class SPARSEMOCAP_OT_next_poor_part(_ActionOperator, Operator):
+class SPARSEMOCAP_OT_next_poor_part(NowOperator, Operator):
     """Go to where the next part with a poor match begins."""
 
     bl_idname = "sparse_mocap.next_poor_part"

@@ -5,18 +5,19 @@ from __future__ import annotations
 
 import bpy
 from bpy.props import StringProperty
-from bpy.types import Context, Event, Operator
+from bpy.types import Context, Operator
 
 from ..scene.settings import settings_of
 from ..session.job import Job
 from ..session.steps import Steps
 from ..session.teaching import MOTIONS, TAKES, Lesson, Taught, teach_job
 from .job_operator import JobOperator
+from .now_operator import FileOperator
 
 SKIP = {"SKIP_SAVE"}
 
 
-class SPARSEMOCAP_OT_choose_taught_motion(Operator):
+class SPARSEMOCAP_OT_choose_taught_motion(FileOperator, Operator):
     """Choose the motion file of the performance."""
 
     bl_idname = "sparse_mocap.choose_taught_motion"
@@ -24,23 +25,17 @@ class SPARSEMOCAP_OT_choose_taught_motion(Operator):
     bl_description = "Choose the motion file of the performance"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
-    filepath: StringProperty(name="File", subtype="FILE_PATH", options=SKIP)
     filter_glob: StringProperty(
         default=";".join(f"*{ending}" for ending in MOTIONS), options={"HIDDEN", "SKIP_SAVE"}
     )
 
-    def invoke(self, context: Context, event: Event) -> set[str]:
-        """Open the file browser."""
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
-
-    def execute(self, context: Context) -> set[str]:
+    def act(self, context: Context) -> str:
         """Remember the path."""
         settings_of(context.scene).teaching.motion = self.filepath
-        return {"FINISHED"}
+        return ""
 
 
-class SPARSEMOCAP_OT_choose_taught_take(Operator):
+class SPARSEMOCAP_OT_choose_taught_take(FileOperator, Operator):
     """Choose the take that was recorded during the performance."""
 
     bl_idname = "sparse_mocap.choose_taught_take"
@@ -48,18 +43,12 @@ class SPARSEMOCAP_OT_choose_taught_take(Operator):
     bl_description = "Choose the take (.csv) that was recorded during the performance"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
-    filepath: StringProperty(name="File", subtype="FILE_PATH", options=SKIP)
     filter_glob: StringProperty(default=f"*{TAKES[0]}", options={"HIDDEN", "SKIP_SAVE"})
 
-    def invoke(self, context: Context, event: Event) -> set[str]:
-        """Open the file browser."""
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
-
-    def execute(self, context: Context) -> set[str]:
+    def act(self, context: Context) -> str:
         """Remember the path."""
         settings_of(context.scene).teaching.take = self.filepath
-        return {"FINISHED"}
+        return ""
 
 
 class SPARSEMOCAP_OT_teach(JobOperator, Operator):
