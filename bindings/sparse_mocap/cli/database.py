@@ -197,7 +197,9 @@ def _teach(
     options: dict[str, Any],
 ) -> None:
     if options.get("rebuild"):
-        raise click.UsageError("--take does not go with --rebuild, which keeps the takes' readings")
+        raise click.UsageError(
+            "--take cannot be used with --rebuild: add the take first, then rebuild, which keeps it"
+        )
     if len(sources) != 1 or sources[0].is_dir():
         raise click.UsageError("--take needs one motion file, the one performed during the take")
     options.pop("rebuild", None)
