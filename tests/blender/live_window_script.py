@@ -176,9 +176,11 @@ def calibrate_and_escape(session: Any) -> Steps:
 def render_meanwhile() -> Steps:
     """The pose stays while a render runs, nothing else begins; the preview goes on afterwards."""
     scene = bpy.context.scene
-    scene.render.engine, scene.cycles.samples = "CYCLES", 2000
+    scene.render.engine, scene.cycles.samples = "CYCLES", 1
     scene.cycles.use_denoising = False
-    scene.render.resolution_x, scene.render.resolution_y = 320, 200
+    scene.render.resolution_x, scene.render.resolution_y = 32, 20
+    may_end = threading.Event()
+    bpy.app.handlers.render_post.append(lambda *_: may_end.wait(TIMEOUT_S))
     bpy.context.preferences.view.render_display_type = "NONE"
     scene.camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     scene.collection.objects.link(scene.camera)
@@ -189,10 +191,10 @@ def render_meanwhile() -> Steps:
     said = raised(RuntimeError, lambda: call(bpy.ops.sparse_mocap.reconstruct))
     assert "render is running" in said
     yield 0.3
-    assert compat.is_rendering(), "the render was too short"
+    assert compat.is_rendering()
     assert len(shown_late_s) == num_shown
     assert np.array_equal(points(), pose)
-    yield from press_escape()  # ends the render
+    may_end.set()
     yield from until(lambda: not compat.is_rendering())
     yield from until(lambda: len(shown_late_s) > num_shown + 3)
     assert live_scene.followed() is not None
