@@ -1,47 +1,108 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A guided performance with sensors that are turned on their limbs. No bpy here."""
+"""Performers who do what a calibration asks for, with sensors that are turned. No bpy here."""
 
 from __future__ import annotations
 
 import os
 import shutil
 import subprocess
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from live_support import until
+from live_support import part_of
 
 PHASES_S = (1.0, 2.0, 1.0, 5.0, 1.0, 5.0)
 """Shorter than a performer needs; an emulator is as quick as that."""
-LEAD_S = 3.0
-"""From the first sample to the first phase: no movement begins before its own phase is near."""
+TRACKER_SITES = ("left_hand", "right_hand", "left_ankle", "right_ankle", "head", "torso")
+READY_S, HOLD_S = 1.5, 1.0
 
 _ROOT = Path(__file__).resolve().parents[2]
 _SOURCES = "" if os.environ.get("SPARSE_MOCAP_PACKAGE") else str(_ROOT / "bindings")
-_MAKER = _ROOT / "tests" / "python" / "guided_body.py"
+_MAKERS = _ROOT / "tests" / "python"
+
+_ELBOWS_S, _SQUATS_S, _END_S = 6.5, 12.5, 20.5
+_FIRST_POSE_S, _TAKEN_S, _HELD_S, _EDGE_S = 1.0, 0.6, 1.2, 0.1
 
 
-def wait_for_lead(session: Any) -> None:
-    """Until it is time to begin the first phase."""
-    until(lambda: session.state.sensors[0]["samples"] >= 100 * LEAD_S)
+@dataclass(frozen=True)
+class Performance:
+    """What sensors read that are turned on their limbs."""
+
+    take: Any
+    """The whole of it."""
+    parts: dict[str, Any]
+    """A take for each thing that the calibration may ask for."""
+    turns: np.ndarray
+    """(S, 3, 3) R_site_sensor."""
+    folder: Path
 
 
-def planted(folder: Path) -> tuple[Path, np.ndarray]:
-    """A take, and (4, 3, 3) R_site_sensor of its sensors. Raises Skipped without SciPy."""
-    take, turns = folder / "guided.csv", folder / "turns.npy"
-    elbows_s = LEAD_S + sum(PHASES_S[:3]) - 0.5
-    squats_s = elbows_s + sum(PHASES_S[3:5])
-    times = [str(seconds) for seconds in (elbows_s, squats_s, squats_s + PHASES_S[5] + 3.0)]
+def guided(folder: Path) -> Performance:
+    """Standing, bending the elbows and squatting. Raises Skipped without SciPy."""
+    import sparse_mocap
+
+    path, turns = folder / "guided.csv", folder / "turns.npy"
+    _make("guided_body.py", path, turns, _ELBOWS_S, _SQUATS_S, _END_S)
+    take = sparse_mocap.read_take(path)
+    parts = {
+        "stand": part_of(take, 0.5, _ELBOWS_S - 0.5),
+        "bend_elbows": part_of(take, _ELBOWS_S, _SQUATS_S),
+        "squat": part_of(take, _SQUATS_S, _END_S),
+    }
+    return Performance(take, parts, np.load(turns), folder)
+
+
+def held(folder: Path) -> Performance:
+    """Each of the calibration poses, with trackers at TRACKER_SITES."""
+    import sparse_mocap
+    from sparse_mocap.pose_calibration import calibration_poses
+
+    path, planted = folder / "held.csv", folder / "planted.npz"
+    _make("held_poses.py", path, planted, _FIRST_POSE_S, _TAKEN_S, _HELD_S)
+    take = sparse_mocap.read_take(path)
+    begin_s, parts = _FIRST_POSE_S + _TAKEN_S, {}
+    for name, _, _ in calibration_poses():
+        parts[name] = part_of(take, begin_s + _EDGE_S, begin_s + _HELD_S - _EDGE_S)
+        begin_s += _TAKEN_S + _HELD_S
+    return Performance(take, parts, np.load(planted)["turns"], folder)
+
+
+def follows_phases(performance: Performance, calibrating: Any, jobs: Any) -> Callable[[], Any]:
+    """What is read now of a performer who does what the running calibration says.
+
+    calibrating, jobs: the add-on's modules.
+    """
+
+    def now() -> Any:
+        job = jobs.current()
+        asked = "" if job is None else job.what
+        names = [phase.name for phase in calibrating.PHASES if asked.startswith(phase.text)]
+        return performance.parts.get("".join(names), performance.parts["stand"])
+
+    return now
+
+
+def follows_poses(performance: Performance, pose_guide: Any) -> Callable[[], Any]:
+    """What is read now of a performer who takes the pose that is shown.
+
+    pose_guide: the add-on's module.
+    """
+    first = next(iter(performance.parts.values()))
+    return lambda: performance.parts.get(pose_guide.shown.pose, first)
+
+
+def _make(maker: str, *arguments: object) -> None:
     python = os.environ.get("SPARSE_MOCAP_TEST_PYTHON") or shutil.which("python") or "python3"
     done = subprocess.run(
-        [python, _MAKER, take, turns, *times],
+        [python, _MAKERS / maker, *map(str, arguments)],
         env=os.environ | {"PYTHONPATH": os.environ.get("SPARSE_MOCAP_TEST_PATH") or _SOURCES},
         capture_output=True, text=True, check=False,
     )  # fmt: skip
-    if "No module named 'scipy'" in done.stderr:
+    if "No module named 'scipy'" in done.stderr or "No module named 'numpy'" in done.stderr:
         from support import Skipped
 
-        raise Skipped("SciPy is not installed")
+        raise Skipped("SciPy or NumPy is not installed")
     assert done.returncode == 0, done.stderr
-    return take, np.load(turns)

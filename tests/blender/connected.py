@@ -7,24 +7,24 @@ import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import bpy
-from live_support import DRIVER, OPTIONS, emulated, own_runtime, repeated, serial_folder, until
+from live_support import DRIVER, OPTIONS, emulated, own_runtime, serial_folder, until
 from support import SITES, Skipped, addon, library, settings
 
 
 @contextmanager
 def connected(
     tmp_path: Path,
-    take_path: Path | None = None,
+    take: Any = None,
     *,
     sites: Sequence[str] = SITES,
     options: str = OPTIONS,
 ) -> Iterator[object]:
-    """A session with an emulator that plays a take, beside a saved file.
+    """A session with an emulator that plays a take, the library's when None, beside a saved file.
 
-    Without a take the library's, again and again: a busy machine may show the first pose only after
-    its length. sites: of its sensors; options: the driver's.
+    take: as for emulated(). sites: of its sensors; options: the driver's.
     """
     if os.name == "nt":
         raise Skipped("there are no pseudo-terminals")
@@ -32,10 +32,8 @@ def connected(
     import sparse_mocap
 
     (tmp_path / "runtime").mkdir(mode=0o700)
-    if take_path is None:
-        take = repeated(sparse_mocap.read_take(library().take), 60)
-    else:
-        take = sparse_mocap.read_take(take_path)
+    if take is None:
+        take = sparse_mocap.read_take(library().take)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
     with own_runtime(tmp_path / "runtime"), emulated(take, as_dict(options)) as port:
         chosen = settings()

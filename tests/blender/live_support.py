@@ -14,6 +14,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -23,13 +24,20 @@ DRIVER, OPTIONS = "xsens_mt", "output=mtdata"
 
 @contextmanager
 def emulated(take: Any, options: dict[str, str] | None = None, **faults: Any) -> Iterator[str]:
-    """The port at which the take is played from the moment somebody opens it.
+    """The port at which the take is played again and again, however long a busy machine needs.
 
+    take: or a function that returns the take to play now; another one begins at once.
     options: the driver's; None: {"output": "mtdata"}, accelerometers without a device's clock.
     """
     from sparse_mocap.capture import Emulator, Faults
 
-    emulator = Emulator(take, DRIVER, options or {"output": "mtdata"}, faults=Faults(**faults))
+    doing = take if callable(take) else lambda: take
+
+    class Performer(Emulator):
+        def schedule(self) -> Iterator[tuple[float, Any]]:
+            return _again_and_again(doing)
+
+    emulator = Performer(doing(), DRIVER, options or {"output": "mtdata"}, faults=Faults(**faults))
     stop = threading.Event()
     [port] = emulator.plug_in()
     thread = threading.Thread(target=lambda: emulator.run(stop.is_set))
@@ -42,21 +50,37 @@ def emulated(take: Any, options: dict[str, str] | None = None, **faults: Any) ->
         emulator.close()
 
 
-def repeated(take: Any, times: int) -> Any:
-    """The same readings that often, one after the other."""
-    import numpy as np
-    from sparse_mocap import SensorRecord, Take
+def _again_and_again(doing: Callable[[], Any]) -> Iterator[tuple[float, Any]]:
+    """What is sent, and when in s, as doing() says."""
+    from sparse_mocap.capture.emulator import instants, period_s
 
-    step_s = take.end_s - take.begin_s + 0.01
-    return Take(
-        {
-            site: SensorRecord(
-                np.concatenate([record.times_s + step_s * index for index in range(times)]),
-                np.tile(record.specific_force, (times, 1)),
-            )
-            for site, record in take.sensors.items()
+    known: dict[int, list[tuple[float, Any]]] = {}
+    begin_s = 0.0
+    while True:
+        take = doing()
+        if id(take) not in known:
+            known[id(take)] = instants(take)
+        next_s = begin_s
+        for time_s, samples in known[id(take)]:
+            if doing() is not take:
+                break
+            yield begin_s + time_s, samples
+            next_s = begin_s + time_s + period_s(take)
+        begin_s = next_s
+
+
+def part_of(take: Any, begin_s: float, end_s: float) -> Any:
+    """What the sensors read from one time to the other."""
+    from sparse_mocap import Take
+
+    parts = {}
+    for site, record in take.sensors.items():
+        is_in = (record.times_s >= begin_s) & (record.times_s < end_s)
+        values = {
+            name: None if value is None else value[is_in] for name, value in vars(record).items()
         }
-    )
+        parts[site] = replace(record, **values)
+    return Take(parts)
 
 
 @contextmanager

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from calibration_support import PHASES_S, planted, wait_for_lead
+from calibration_support import PHASES_S, follows_phases, guided
 from connected import connected
 from live_support import until
 from support import (
@@ -56,16 +56,16 @@ def _first_axes(session):
 
 
 def test_a_calibration_is_made_kept_and_used(tmp_path):
-    take, R_site_sensor = planted(tmp_path)
-    with _short_phases(), connected(tmp_path, take) as session:
+    performed = guided(tmp_path)
+    doing = follows_phases(performed, addon("session.calibrating"), addon("session.job"))
+    with _short_phases(), connected(tmp_path, doing) as session:
         assert bpy.ops.sparse_mocap.go_live() == {"FINISHED"}
         until(lambda: session.state.is_live)
-        wait_for_lead(session)
         assert bpy.ops.sparse_mocap.calibrate_sensors() == {"FINISHED"}
         path = settings().calibration
         assert Path(path).parent == tmp_path / "takes"
         found = addon("session.calibrating").calibrations.get(path)
-        for site, wanted in zip(SITES, R_site_sensor, strict=True):
+        for site, wanted in zip(SITES, performed.turns, strict=True):
             off = found.sensors[site].R_site_sensor @ wanted.T
             assert np.degrees(np.arccos(min((np.trace(off) - 1) / 2, 1.0))) < 5.0, site
         wanted = found.sensors[SITES[0]]
@@ -79,13 +79,13 @@ def test_a_take_is_reconstructed_as_the_calibration_says(tmp_path):
     from sparse_mocap.calibration import Calibration, SensorCalibration, apply
     from sparse_mocap.calibration_file import write_calibration
 
-    with_gyroscopes, R_site_sensor = planted(tmp_path)
+    performed = guided(tmp_path)
     take = tmp_path / "accelerometers.csv"
-    sparse_mocap.write_take(take, _without_gyroscopes(sparse_mocap.read_take(with_gyroscopes)))
+    sparse_mocap.write_take(take, _without_gyroscopes(performed.take))
     found = {
         site: SensorCalibration(site, 1.03, R, 0.7, np.zeros(3), 1.0, True, True,
                                 9.81, 0.0, 9.0, 0.1)
-        for site, R in zip(SITES, R_site_sensor, strict=True)
+        for site, R in zip(SITES, performed.turns, strict=True)
     }  # fmt: skip
     write_calibration(tmp_path / "sensors.json", Calibration(found))
     ideal = apply(Calibration(found), sparse_mocap.read_take(take))

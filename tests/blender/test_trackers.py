@@ -3,24 +3,17 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
-from pathlib import Path
-
 import bpy
 import numpy as np
 import rigs
+from calibration_support import HOLD_S, READY_S, follows_poses, held
+from calibration_support import TRACKER_SITES as SITES
 from connected import connected
 from live_support import until
 from rig_baking import limbs_of
-from support import Skipped, addon, error_of, library, reconstruct, settings
+from support import addon, error_of, library, reconstruct, settings
 
-SITES = ("left_hand", "right_hand", "left_ankle", "right_ankle", "head", "torso")
 WITH_ORIENTATION = "output=mtdata2"
-LEAD_S, READY_S, HOLD_S = 3.0, 2.0, 1.0
-
-_ROOT = Path(__file__).resolve().parents[2]
 
 
 def _performed():
@@ -67,8 +60,7 @@ def test_a_take_of_trackers_is_baked_on_a_character(tmp_path):
 def test_a_character_follows_trackers_live(tmp_path):
     import sparse_mocap
 
-    take = tmp_path / "trackers.csv"
-    sparse_mocap.write_take(take, sparse_mocap.simulated(_performed(), SITES, 100.0))
+    take = sparse_mocap.simulated(_performed(), SITES, 100.0)
     armature = rigs.named_rig("unreal")
     with connected(tmp_path, take, sites=SITES, options=WITH_ORIENTATION) as session:
         _choose()
@@ -91,29 +83,16 @@ def test_a_character_follows_trackers_live(tmp_path):
 
 
 def test_trackers_are_calibrated_by_poses(tmp_path):
-    take, planted = tmp_path / "held.csv", tmp_path / "planted.npz"
-    python = os.environ.get("SPARSE_MOCAP_TEST_PYTHON") or shutil.which("python") or "python3"
-    times = [str(LEAD_S + 1.2), "0.6", str(READY_S + HOLD_S - 0.6)]
-    maker = _ROOT / "tests" / "python" / "held_poses.py"
-    sources = "" if os.environ.get("SPARSE_MOCAP_PACKAGE") else str(_ROOT / "bindings")
-    environment = {"PYTHONPATH": os.environ.get("SPARSE_MOCAP_TEST_PATH") or sources}
-    done = subprocess.run(
-        [python, maker, take, planted, *times],
-        env=os.environ | environment, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    if "No module named" in done.stderr:
-        raise Skipped("the take is made by a Python with NumPy")
-    assert done.returncode == 0, done.stderr
-    guide = addon("session.pose_guide")
+    performed, guide = held(tmp_path), addon("session.pose_guide")
     before = guide.TIMES
     guide.TIMES = guide.Times(READY_S, HOLD_S)
+    doing = follows_poses(performed, guide)
     try:
-        with connected(tmp_path, take, sites=SITES, options=WITH_ORIENTATION) as session:
+        with connected(tmp_path, doing, sites=SITES, options=WITH_ORIENTATION) as session:
             assert all(sensor["has_orientation"] for sensor in session.state.sensors)
-            until(lambda: session.state.sensors[0]["samples"] >= 100 * LEAD_S)
             assert bpy.ops.sparse_mocap.calibrate_by_poses() == {"FINISHED"}
             found = addon("session.calibrating").calibrations.get(settings().calibration)
-            for site, wanted in zip(SITES, np.load(planted)["turns"], strict=True):
+            for site, wanted in zip(SITES, performed.turns, strict=True):
                 off = found.sensors[site].R_site_sensor @ wanted.T
                 assert np.degrees(np.arccos(min((np.trace(off) - 1) / 2, 1.0))) < 10.0, site
             assert found.body is not None

@@ -6,9 +6,8 @@ window_script.py -- SCENARIO MOTIONS DATABASE TAKE FOLDER
 
 import os
 import sys
-import time
+import threading
 import traceback
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,81 +16,36 @@ import bpy
 sys.path.insert(0, str(Path(__file__).parent))
 import installed
 from large_file import large_file
-
-installed.prepare_paths()
-job_operator, jobs = installed.module("ops.job_operator"), installed.module("session.job")
-
-SCENARIO, MOTIONS, DATABASE, TAKE, FOLDER = sys.argv[sys.argv.index("--") + 1 :]
-TIMEOUT_S = 60.0
-Steps = Iterator[float]
-
-
-def slow_down(pause_s: float) -> None:
-    """Let every progress of a job take that long, so that it runs while something happens.
-
-    Unless the job is cancelled meanwhile.
-    """
-    on_progress = jobs.Job._on_progress
-
-    def slow(self: Any, *args: object) -> bool:
-        end = time.perf_counter() + pause_s
-        while time.perf_counter() < end and not self.is_cancelled:
-            time.sleep(0.01)
-        return on_progress(self, *args)
-
-    jobs.Job._on_progress = slow
-
-
-def view() -> dict[str, object]:
-    window = bpy.context.window_manager.windows[0]
-    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
-    region = next(region for region in area.regions if region.type == "WINDOW")
-    return {"window": window, "area": area, "region": region}
-
-
-def start(operator: Callable[..., set[str]], **options: object) -> Any:
-    with bpy.context.temp_override(**view()):
-        assert operator("INVOKE_DEFAULT", True, **options) == {"RUNNING_MODAL"}
-    job = jobs.current()
-    assert job is not None
-    return job
-
-
-def start_building() -> Any:
-    slow_down(TIMEOUT_S)
-    path = str(Path(FOLDER) / "new.smdb")
-    return start(bpy.ops.sparse_mocap.build_database, source=MOTIONS, filepath=path, mirror=True)
-
-
-def until(is_done: Callable[[], bool]) -> Steps:
-    begin = time.perf_counter()
-    while not is_done():
-        assert time.perf_counter() - begin < TIMEOUT_S, "nothing happened"
-        yield 0.05
-
-
-def undo() -> None:
-    with bpy.context.temp_override(**view()):
-        bpy.ops.ed.undo()
-
-
-def files() -> list[str]:
-    return sorted(path.name for path in Path(FOLDER).iterdir())
-
-
-def choose_files() -> None:
-    settings = bpy.context.scene.sparse_mocap
-    settings.database, settings.take = DATABASE, TAKE
-    with bpy.context.temp_override(**view()):
-        bpy.ops.ed.undo_push(message="files chosen")
+from window_support import (
+    DATABASE,
+    FOLDER,
+    MOTIONS,
+    SCENARIO,
+    TAKE,
+    TIMEOUT_S,
+    Steps,
+    choose_files,
+    files,
+    job_operator,
+    jobs,
+    press_escape,
+    slow_down,
+    start,
+    start_building,
+    undo,
+    until,
+    until_ended,
+    view,
+    watch_ends,
+)  # fmt: skip
 
 
 def reconstruct() -> Steps:
     choose_files()
     before = [item.name for item in bpy.data.objects]
     start(bpy.ops.sparse_mocap.reconstruct)
-    yield from until(lambda: len(bpy.data.actions) == 1)
-    yield 0.3
+    yield from until_ended()
+    assert len(bpy.data.actions) == 1
     assert bpy.context.view_layer.objects.active.type == "ARMATURE"
     undo()
     yield 0.1
@@ -123,7 +77,8 @@ def cancel() -> Steps:
 
 
 def undo_meanwhile() -> Steps:
-    slow_down(0.05)
+    on_progress, is_undone = jobs.Job._on_progress, threading.Event()
+    jobs.Job._on_progress = lambda *args: is_undone.wait(TIMEOUT_S) and on_progress(*args)
     choose_files()
     bpy.data.objects.new("extra", None)
     with bpy.context.temp_override(**view()):
@@ -132,7 +87,9 @@ def undo_meanwhile() -> Steps:
     yield 0.2
     assert job.is_running
     undo()
-    yield from until(lambda: len(bpy.data.actions) == 1)
+    is_undone.set()
+    yield from until_ended()
+    assert len(bpy.data.actions) == 1
     assert "extra" not in bpy.data.objects
     assert bpy.context.view_layer.objects.active.animation_data.action == bpy.data.actions[0]
 
@@ -171,19 +128,11 @@ def adjust_afterwards() -> Steps:
     choose_files()
     bpy.context.scene.sparse_mocap.start_frame = 11.0
     start(bpy.ops.sparse_mocap.reconstruct)
-    yield from until(lambda: len(bpy.data.actions) == 1)
-    yield 0.3
+    yield from until_ended()
     operator = bpy.context.window_manager.operators[-1]
     assert operator.bl_idname == "SPARSE_MOCAP_OT_reconstruct"
     assert operator.properties.start_frame == 11.0
     assert bpy.data.actions[0].frame_range[0] == 11.0
-
-
-def press_escape() -> Steps:
-    window = bpy.context.window_manager.windows[0]
-    for value in ("PRESS", "RELEASE"):
-        window.event_simulate(type="ESC", value=value, x=200, y=200)
-        yield 0.05
 
 
 def bake_escaped() -> Steps:
@@ -197,8 +146,7 @@ def bake_escaped() -> Steps:
     yield 0.2
     assert job.is_running
     yield from press_escape()
-    yield from until(lambda: not job.is_running)
-    yield 0.3
+    yield from until_ended()
     jobs.Job._on_progress = on_progress
     for is_halfway in (False, True):
         assert [item.name for item in bpy.data.objects] == before
@@ -217,7 +165,7 @@ def escape_while_keys_are_set() -> Steps:
     start(bpy.ops.sparse_mocap.reconstruct)
     yield from until(lambda: len(bpy.data.actions) == 1)
     yield from press_escape()
-    yield 0.3
+    yield from until_ended()
 
 
 def confirm_dialog() -> Steps:
@@ -253,7 +201,7 @@ def import_dropped() -> Steps:
         num_halfway += len(bpy.data.actions)
         yield 0.01
     assert num_halfway > 3, "the window stood still while keys were set"
-    yield 0.3
+    yield from until_ended()
     action = bpy.data.actions["large"]
     assert bpy.context.view_layer.objects.active.animation_data.action == action
     assert jobs.current() is None
@@ -270,7 +218,7 @@ def import_escaped() -> Steps:
     yield from until(lambda: len(bpy.data.actions) == 1)
     assert len(bpy.data.armatures) == 1
     yield from press_escape()
-    yield 0.3
+    yield from until_ended()
     assert not bpy.data.actions
     assert not bpy.data.armatures
     assert [item.name for item in bpy.data.objects] == before
@@ -282,14 +230,13 @@ def import_undone_meanwhile() -> Steps:
     yield from begin_import(large_file(Path(FOLDER)))
     yield from until(lambda: len(bpy.data.actions) == 1)
     undo()
-    yield 0.5
+    yield from until_ended()
     assert not bpy.data.actions
     assert [item.name for item in bpy.data.objects] == before
 
 
 def until_imported(before: list[str]) -> Steps:
-    yield from until(lambda: any(item.animation_data for item in bpy.data.objects))
-    yield 0.3
+    yield from until_ended()
     assert len(bpy.data.actions) == 1
     undo()
     yield 0.1
@@ -302,9 +249,16 @@ def import_chosen() -> Steps:
     with bpy.context.temp_override(**view()):
         bpy.ops.ed.undo_push(message="before")
         bpy.ops.sparse_mocap.import_bvh("INVOKE_DEFAULT", True)
-    yield 1.0
     windows = bpy.context.window_manager.windows
-    found = [(w, a) for w in windows for a in w.screen.areas if a.type == "FILE_BROWSER"]
+    found: list[tuple[Any, Any]] = []
+
+    def is_open() -> bool:
+        areas = [(window, area) for window in windows for area in window.screen.areas]
+        found[:] = [pair for pair in areas if pair[1].type == "FILE_BROWSER"]
+        return bool(found) and found[0][1].spaces.active.params is not None
+
+    yield from until(is_open)
+    yield 0.5
     window, area = found[0]
     area.spaces.active.params.directory = os.path.dirname(path).encode()
     area.spaces.active.params.filename = os.path.basename(path)
@@ -394,5 +348,6 @@ def tick() -> float | None:
 
 bpy.context.preferences.view.show_splash = False
 installed.register()
+watch_ends()
 steps = SCENARIOS[SCENARIO]()
 bpy.app.timers.register(tick, persistent=True, first_interval=1.0)

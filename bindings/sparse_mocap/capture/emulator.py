@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import random
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -123,7 +123,7 @@ class Emulator:
         """Plays the take once, as soon as a host has opened every port."""
         if not self._wait(lambda: all(line.port.is_open() for line in self.lines), must_end):
             return
-        due = instants(self.take)
+        due = self.schedule()
         for line in self.lines:
             self._send(line, line.encoder.hello())
         self._until(time.perf_counter_ns() + int(_GREETING_S * 1e9))
@@ -138,6 +138,10 @@ class Emulator:
             self._play(time_s, samples)
         self.is_done = True
         self._drain(must_end)
+
+    def schedule(self) -> Iterable[tuple[float, Samples]]:
+        """What is sent, and when in s since the take's begin."""
+        return instants(self.take)
 
     def _play(self, time_s: float, samples: Samples) -> None:
         if _is_within(time_s, self.faults.stalls):

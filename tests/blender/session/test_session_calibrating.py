@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import sys
 import threading
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +12,13 @@ pytest.importorskip("serial")
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import sparse_mocap
-from calibration_support import LEAD_S, PHASES_S, planted, wait_for_lead
+from calibration_support import PHASES_S, follows_phases, guided
 from live_support import DRIVER, OPTIONS, emulated, own_runtime, until
 from sparse_mocap.calibration import CalibrationError
 from sparse_mocap.calibration_file import read_calibration
 
 from blender_addon.session import calibrating, live, sensors
+from blender_addon.session import job as jobs
 from blender_addon.session.errors import InputError
 from blender_addon.session.job import Cancelled
 from blender_addon.session.live_poses import LivePoses
@@ -31,9 +33,8 @@ PHASES = tuple(
 
 @pytest.fixture(scope="module")
 def performance(tmp_path_factory):
-    """A take of the guided movements, and how its sensors are turned."""
     pytest.importorskip("scipy", reason="the performance is made with SciPy")
-    return planted(tmp_path_factory.mktemp("planted"))
+    return guided(tmp_path_factory.mktemp("guided"))
 
 
 @pytest.fixture(autouse=True)
@@ -45,25 +46,31 @@ def runtime(tmp_path):
         live.end()
 
 
-@pytest.fixture
-def session(performance, tmp_path):
-    with emulated(sparse_mocap.read_take(performance[0])) as port:
+@contextmanager
+def connected(doing, folder):
+    """A session with an emulator of what the performer does."""
+    with emulated(doing) as port:
         chosen = sensors.Port(port, DRIVER, options=OPTIONS, sites=", ".join(SITES))
-        live.begin(sensors.new_session(chosen, tmp_path / "takes"))
+        live.begin(sensors.new_session(chosen, folder))
         session = live.current()
         until(lambda: session.state.error or len(session.state.sensors) == len(SITES))
         yield session
         live.end()
 
 
+@pytest.fixture
+def session(performance, tmp_path):
+    with connected(follows_phases(performance, calibrating, jobs), tmp_path / "takes") as session:
+        yield session
+
+
 def test_what_was_planted_is_found_and_kept(performance, session, tmp_path):
-    wait_for_lead(session)
     told = []
     job = calibrating.calibrating_job(session, tmp_path / "takes", 1.75, PHASES)
     result = job.run(lambda: told.append((job.fraction, job.what)))
     sensors_found = result.calibration.sensors
     assert list(sensors_found) == SITES
-    for site, R_site_sensor in zip(SITES, performance[1], strict=True):
+    for site, R_site_sensor in zip(SITES, performance.turns, strict=True):
         off = sensors_found[site].R_site_sensor @ R_site_sensor.T
         assert np.degrees(np.arccos(min((np.trace(off) - 1) / 2, 1.0))) < 5.0, site
         assert sensors_found[site].scale == pytest.approx(1.03, rel=0.01)
@@ -90,16 +97,16 @@ def test_cancelling_ends_the_recording_and_leaves_no_file(session, tmp_path):
     assert list((tmp_path / "takes").glob("*.json")) == []
 
 
-def test_who_fidgets_is_told_so_in_a_line(session, tmp_path):
+def test_who_fidgets_is_told_so_in_a_line(performance, tmp_path):
     """The performer bends the elbows when it is time to stand still."""
     (still,) = (phase for phase in PHASES if phase.name == "stand")
-    bending_s = LEAD_S + sum(PHASES_S[:3]) + 1.0
-    until(lambda: session.state.sensors[0]["samples"] >= 100 * bending_s)
-    job = calibrating.calibrating_job(session, tmp_path / "takes", 1.75, (still,))
-    with pytest.raises(CalibrationError, match="still") as error:
-        job.run()
+    folder = tmp_path / "takes"
+    with connected(performance.parts["bend_elbows"], folder) as session:
+        job = calibrating.calibrating_job(session, folder, 1.75, (still,))
+        with pytest.raises(CalibrationError, match="still") as error:
+            job.run()
     assert len(str(error.value).splitlines()) == 1
-    assert list((tmp_path / "takes").glob("*.json")) == []
+    assert list(folder.glob("*.json")) == []
 
 
 def test_not_while_something_is_recorded(session, tmp_path):
@@ -111,15 +118,13 @@ def test_not_while_something_is_recorded(session, tmp_path):
 
 def test_live_poses_of_calibrated_sensors_are_those_of_ideal_ones(performance, tmp_path):
     """Whether the samples are corrected before or in the stream does not matter."""
-    take = sparse_mocap.read_take(performance[0])
-    path = tmp_path / "db.smdb"
-    body = Path(performance[0]).with_name("body.bvh")
-    sparse_mocap.build_database([body], path)
+    take, path = performance.take, tmp_path / "db.smdb"
+    sparse_mocap.build_database([performance.folder / "body.bvh"], path)
     database = sparse_mocap.MotionDatabase(path)
     found = {
         site: sparse_mocap.SensorCalibration(site, 1.03, R, 1.0, np.zeros(3), 1.0, True, True,
                                              9.81, 0.0, 9.0, 0.1)
-        for site, R in zip(SITES, performance[1], strict=True)
+        for site, R in zip(SITES, performance.turns, strict=True)
     }  # fmt: skip
     calibration = sparse_mocap.calibration.Calibration(found)
     ideal = sparse_mocap.calibration.apply(calibration, take)

@@ -1,5 +1,4 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-import subprocess
 import sys
 import threading
 import time
@@ -14,6 +13,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import sparse_mocap
 import sparse_mocap.pose_calibration
+from calibration_support import HOLD_S, READY_S, follows_poses, held
+from calibration_support import TRACKER_SITES as SITES
 from live_support import emulated, own_runtime, until
 from sparse_mocap.calibration_file import read_calibration
 
@@ -21,29 +22,20 @@ from blender_addon.session import live, pose_guide, sensors
 from blender_addon.session.errors import InputError
 from blender_addon.session.job import Cancelled
 
-ROOT = Path(__file__).resolve().parents[3]
-SITES = ("left_hand", "right_hand", "left_ankle", "right_ankle", "head", "torso")
-LEAD_S, READY_S, HOLD_S = 3.0, 2.0, 1.0
 TIMES = pose_guide.Times(READY_S, HOLD_S)
 
 
 @pytest.fixture(scope="module")
 def performance(tmp_path_factory):
-    """A take of the held poses, and how its trackers are turned."""
-    folder = tmp_path_factory.mktemp("held")
-    maker = ROOT / "tests" / "python" / "held_poses.py"
-    # Each pose is taken long before the guide records it.
-    command = [sys.executable, maker, folder / "take.csv", folder / "planted.npz"]
-    subprocess.run([*command, str(LEAD_S + 1.2), "0.6", str(READY_S + HOLD_S - 0.6)], check=True)
-    return sparse_mocap.read_take(folder / "take.csv"), np.load(folder / "planted.npz")["turns"]
+    return held(tmp_path_factory.mktemp("held"))
 
 
 @pytest.fixture
 def session(performance, tmp_path):
     folder = tmp_path / "runtime"
     folder.mkdir(mode=0o700)
-    options = {"output": "mtdata2"}
-    with own_runtime(folder), emulated(performance[0], options) as port:
+    doing = follows_poses(performance, pose_guide)
+    with own_runtime(folder), emulated(doing, {"output": "mtdata2"}) as port:
         chosen = sensors.Port(port, "xsens_mt", options="output=mtdata2", sites=", ".join(SITES))
         live.begin(sensors.new_session(chosen, tmp_path / "takes"))
         session = live.current()
@@ -83,11 +75,10 @@ def test_a_pose_is_held_for_its_full_time_after_a_long_calculation():
 
 
 def test_the_guide_finds_how_trackers_sit(performance, session, tmp_path):
-    until(lambda: session.state.sensors[0]["samples"] >= 100 * LEAD_S)
     shown = []
     job = pose_guide.pose_guide_job(session, tmp_path / "takes", TIMES)
     result = job.run(lambda: shown.append((job.fraction, job.what, pose_guide.shown)))
-    for site, R_site_sensor in zip(SITES, performance[1], strict=True):
+    for site, R_site_sensor in zip(SITES, performance.turns, strict=True):
         off = angle_deg(result.calibration.sensors[site].R_site_sensor @ R_site_sensor.T)
         assert off < 10.0, site
     assert set(read_calibration(result.path).sensors) == set(SITES)
