@@ -78,6 +78,7 @@ LABELS = {
     "Face Front": "Nach vorn drehen",
     "Front": "Vorn",
     "Record": "Aufnehmen",
+    "Cancel: starts in {seconds} s": "Abbrechen: Start in {seconds} s",
     "Record or Stop": "Aufnehmen oder beenden",
     "Stop Recording": "Aufnahme beenden",
     "Calibrate": "Kalibrieren",

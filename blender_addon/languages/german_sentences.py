@@ -69,7 +69,9 @@ SENTENCES = {
     "Without a calibration, wear the sensors in the default orientation (see README)": (
         "Ohne Kalibrierung die Sensoren so tragen, wie es im README steht"
     ),
-    "quality {quality}, {gravity} m/s² at rest": "Qualität {quality}, {gravity} m/s² in Ruhe",
+    "{site}: quality {quality}, {gravity} m/s² at rest": (
+        "{site}: Qualität {quality}, {gravity} m/s² in Ruhe"
+    ),
     "The recording continues even if Blender quits": (
         "Die Aufnahme geht weiter, auch wenn Blender endet"
     ),

@@ -36,7 +36,7 @@ class SPARSEMOCAP_OT_record_or_stop(Operator):
     _end_s = 0.0
 
     def invoke(self, context: Context, _: Event) -> set[str]:
-        """Count down in large letters, or stop at once."""
+        """Count down in large letters, end the countdown, or stop at once."""
         try:
             state = connected().state
         except Exception as error:
@@ -44,6 +44,9 @@ class SPARSEMOCAP_OT_record_or_stop(Operator):
             return {"CANCELLED"}
         if state.recording is not None:
             bpy.ops.sparse_mocap.stop_take("INVOKE_DEFAULT", True)
+            return {"FINISHED"}
+        if prompt.countdown_s() > 0:
+            prompt.show_countdown(0)
             return {"FINISHED"}
         seconds = settings_of(context.scene).countdown_s
         if seconds == 0 or bpy.app.background:
@@ -55,8 +58,9 @@ class SPARSEMOCAP_OT_record_or_stop(Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: Context, event: Event) -> set[str]:
-        """Record when the time has come; Esc leaves nothing."""
-        if event.type == "ESC" and event.value == "PRESS":
+        """Record when the time has come; Esc, or to press Record again, leaves nothing."""
+        is_escape = event.type == "ESC" and event.value == "PRESS"
+        if is_escape or prompt.countdown_s() == 0:
             self._leave(context)
             self.report({"INFO"}, tr_line("Nothing was recorded"))
             return {"CANCELLED"}

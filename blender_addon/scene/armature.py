@@ -196,7 +196,7 @@ def reusable_armature(context: Context) -> Object:
 
 def select_only(context: Context, obj: Object) -> None:
     """Make the object active and alone selected."""
-    for other in context.view_layer.objects:
+    for other in filter(None, context.view_layer.objects):  # None: just removed, in 5.2
         other.select_set(other == obj)
     context.view_layer.objects.active = obj
 

@@ -13,7 +13,7 @@ from ..session import job as jobs
 from ..session import pose_guide
 from ..session.pose_guide import CALIBRATING_BY_POSES
 from . import drawing
-from .prompt import LARGEST_PX, free_view, line
+from .prompt import LARGEST_PX, free_view, instruction, line
 from .translations import tr
 
 _READY = (0.35, 0.65, 1.0, 1.0)
@@ -48,22 +48,15 @@ def _draw() -> None:
         return
     left, width, height = free_view()
     _figures(now.pose, _HELD if now.is_held else _READY, left, width, height)
-    headline, _, hint = tr(pose_guide.POSE_TEXTS[now.pose]).partition(", ")
-    line(headline, LARGEST_PX, left, width, 0.32 * height)
-    line(hint, 0.5 * LARGEST_PX, left, width, 0.32 * height - 0.9 * LARGEST_PX)
+    y = instruction(tr(pose_guide.POSE_TEXTS[now.pose]), left, width, 0.32 * height)
     what = tr(pose_guide.HOLD if now.is_held else pose_guide.READY)
-    line(
-        f"{what}: {math.ceil(now.seconds)}",
-        LARGEST_PX,
-        left,
-        width,
-        0.32 * height - 2.2 * LARGEST_PX,
-    )
+    y -= 1.3 * LARGEST_PX
+    line(f"{what}: {math.ceil(now.seconds)}", LARGEST_PX, left, width, y)
     more = now.problem
     if now.missed_deg is not None:
         more = tr(pose_guide.MISSED).format(degrees=round(now.missed_deg))
     if more:
-        line(more, 0.5 * LARGEST_PX, left, width, 0.32 * height - 3.1 * LARGEST_PX)
+        line(more, 0.5 * LARGEST_PX, left, width, y - 0.9 * LARGEST_PX)
 
 
 def _figures(pose: str, colour: drawing.Colour, left: float, width: float, height: float) -> None:

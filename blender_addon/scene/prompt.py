@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import Any
 
 import blf
@@ -38,6 +39,11 @@ def show_countdown(seconds: int) -> None:
         hide()
 
 
+def countdown_s() -> int:
+    """How many seconds are left; 0: nothing is counted."""
+    return _countdown
+
+
 def hide() -> None:
     """Remove the instructions from the viewports."""
     global _handler
@@ -56,11 +62,31 @@ def _draw() -> None:
     if job is None or job.label != CALIBRATING or job.is_cancelled:
         return
     what, _, seconds = job.what.rpartition(": ")
-    headline, _, hint = tr(what).partition(", ")
     left, width, height = free_view()
-    line(headline, LARGEST_PX, left, width, 0.62 * height)
-    line(hint, 0.5 * LARGEST_PX, left, width, 0.62 * height - 0.9 * LARGEST_PX)
-    line(seconds, 1.5 * LARGEST_PX, left, width, 0.62 * height - 2.8 * LARGEST_PX)
+    y = instruction(tr(what), left, width, 0.62 * height)
+    line(seconds, 1.5 * LARGEST_PX, left, width, y - 1.9 * LARGEST_PX)
+
+
+def instruction(text: str, left: float, width: float, y: float) -> float:
+    """Draw what to do in large letters, and how below, which is behind the first comma.
+
+    Returns where the last line is.
+    """
+    headline, _, hint = text.partition(", ")
+    line(headline, LARGEST_PX, left, width, y)
+    y -= 0.9 * LARGEST_PX
+    for number, part in enumerate(_halves(hint, 0.5 * LARGEST_PX, 0.9 * width)):
+        y -= 0.7 * LARGEST_PX * (number > 0)
+        line(part, 0.5 * LARGEST_PX, left, width, y)
+    return y
+
+
+def _halves(text: str, size: float, room: float) -> list[str]:
+    """The text, on two lines if it is too long for one."""
+    blf.size(_FONT, size)
+    if blf.dimensions(_FONT, text)[0] <= room:
+        return [text]
+    return textwrap.wrap(text, 2 + len(text) // 2) or [""]
 
 
 def free_view() -> tuple[float, float, float]:

@@ -17,7 +17,7 @@ from ..session.names import shown_site
 from ..session.reconstruct import Performance, kept
 from . import compat
 from .axes import Floats
-from .drawing import lines, polyline, rectangle
+from .drawing import Colour, lines, polyline, rectangle
 from .performance import Facts, facts_of, performed_action
 from .translations import tr
 
@@ -30,6 +30,8 @@ _EXPECTED = (0.902, 0.624, 0.0, 1.0)
 _PLAYHEAD = (1.0, 1.0, 1.0, 0.9)
 _GROUND = (0.1, 0.1, 0.1, 0.75)
 _WORDS = (0.95, 0.95, 0.95, 1.0)
+
+_Part = tuple[str, Colour]
 
 _ROW_PX, _GAP_PX, _MARGIN_PX, _FONT_PX = 46.0, 6.0, 14.0, 11.0
 _BOTTOM_PX = 40.0  # above the settings of the last operator
@@ -118,7 +120,7 @@ def _draw() -> None:
         high = (right, low[1] + row)
         rectangle(low, high, _GROUND)
         _plot(curves, sensor, low, high, top)
-        _write(context, curves, sensor, shown_site(site), low, scale)
+        _write(curves, sensor, shown_site(site), low, high, scale)
 
 
 def _plot(
@@ -145,31 +147,46 @@ def _plot(
 
 
 def _write(
-    context: Context,
     curves: SensorCurves,
     sensor: int,
     site: str,
     low: tuple[float, float],
+    high: tuple[float, float],
     scale: float,
 ) -> None:
-    """The sensor's name and its values at the playhead."""
+    """The sensor's name and its values at the playhead, as far as there is room."""
     if len(curves.times_s) == 0:
         return
     now = int(np.argmin(np.abs(curves.times_s)))
     measured, expected = curves.measured[now, sensor], curves.expected[now, sensor]
-    parts = [
-        (tr(site), _WORDS),
-        (tr("measured {value}").format(value=f"{measured:.1f}"), _MEASURED),
-        (tr("expected {value} m/s²").format(value=f"{expected:.1f}"), _EXPECTED),
+    name, numbers = (tr(site), _WORDS), (f"{measured:.1f}", f"{expected:.1f}")
+    words = (tr("measured {value}"), tr("expected {value} m/s²"))
+    told = [word.format(value=number) for word, number in zip(words, numbers, strict=True)]
+    versions = [
+        [name, *zip(values, (_MEASURED, _EXPECTED), strict=True)] for values in (told, numbers)
     ]
     blf.size(0, _FONT_PX * scale)
-    x = low[0] + _GAP_PX * scale
+    gap = _GAP_PX * scale
+    parts = _first_that_fits([*versions, [name]], high[0] - low[0] - 2.0 * gap, 3.0 * gap)
+    x = low[0] + gap
     y = low[1] + (_ROW_PX - _FONT_PX - 3.0) * scale
+    blf.enable(0, blf.CLIPPING)
+    blf.clipping(0, *low, *high)
     for text, colour in parts:
         blf.color(0, *colour)
         blf.position(0, x, y, 0.0)
         blf.draw(0, text)
-        x += blf.dimensions(0, text)[0] + 3.0 * _GAP_PX * scale
+        x += blf.dimensions(0, text)[0] + 3.0 * gap
+    blf.disable(0, blf.CLIPPING)
+
+
+def _first_that_fits(versions: list[list[_Part]], room: float, gap: float) -> list[_Part]:
+    """The last one where none does."""
+    for parts in versions[:-1]:
+        lengths = [blf.dimensions(0, text)[0] for text, _ in parts]
+        if sum(lengths) + gap * (len(parts) - 1) <= room:
+            return parts
+    return versions[-1]
 
 
 def _free_width(context: Context) -> tuple[float, float]:

@@ -7,7 +7,7 @@ import re
 
 import bpy
 
-from ..languages import german, german_reports
+from ..languages import german, german_core, german_reports
 
 _ADDON = __package__.rpartition(".")[0]
 _CONTEXTS = ("*", "Operator")
@@ -24,6 +24,8 @@ def tr_line(line: str) -> str:
 
     Such lines are made where nothing knows of Blender, with names and numbers filled in.
     """
+    if bpy.app.translations.locale not in _LOCALES:
+        return line
     said = tr(line)
     if said != line:
         return said
@@ -36,7 +38,7 @@ def tr_line(line: str) -> str:
     return line
 
 
-_OUR_WORDS = {"agreement", "kind", "job", "match", "reason"}
+_OUR_WORDS = {"agreement", "kind", "job", "match", "other", "reason", "site"}
 """What is filled in that is ours to translate, unlike the names of objects and files."""
 
 
@@ -54,7 +56,9 @@ def _num_literal(template: str) -> int:
 
 _TEMPLATES = [
     (template, _pattern(template))
-    for template in sorted(german_reports.REPORTS, key=_num_literal, reverse=True)
+    for template in sorted(
+        (*german_reports.REPORTS, *german_core.CORE), key=_num_literal, reverse=True
+    )
     if "{" in template
 ]
 

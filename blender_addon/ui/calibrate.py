@@ -50,17 +50,17 @@ class SPARSEMOCAP_PT_calibration(StepPanel, Panel):
         missing = "" if session.state.sensors else "Waiting for data"
         if session.state.recording is not None and not is_calibrating():
             missing = "Stop the recording first"
-        if not job_is_running(CALIBRATING_BY_POSES):
+        buttons = [("sparse_mocap.calibrate_sensors", "ORIENTATION_GIMBAL", CALIBRATING)]
+        if any(sensor["has_orientation"] for sensor in session.state.sensors):
+            by_poses = "sparse_mocap.calibrate_by_poses"
+            buttons.append((by_poses, "OUTLINER_OB_ARMATURE", CALIBRATING_BY_POSES))
+        if is_calibrating():
+            buttons = [button for button in buttons if job_is_running(button[2])]
+        for button in buttons:
+            is_last = button is buttons[-1]
             action_button(
-                layout, "sparse_mocap.calibrate_sensors", "ORIENTATION_GIMBAL", CALIBRATING,
-                is_ready=not missing, has_details=not is_calibrating(),
-            )  # fmt: skip
-        has_orientations = any(sensor["has_orientation"] for sensor in session.state.sensors)
-        if has_orientations and not job_is_running(CALIBRATING):
-            action_button(
-                layout, "sparse_mocap.calibrate_by_poses", "OUTLINER_OB_ARMATURE",
-                CALIBRATING_BY_POSES, is_ready=not missing, has_details=not is_calibrating(),
-            )  # fmt: skip
+                layout, *button, is_ready=not missing, has_details=is_last and not is_calibrating()
+            )
         if missing:
             text.paragraph(layout, context, missing, icon="INFO")
 
@@ -78,15 +78,20 @@ def _contents(layout: UILayout, context: Context, path: str) -> None:
     elif (calibration := entry.value) is None:
         text.error(layout, context, entry.error)
     else:
-        text.facts(layout, [_row(sensor) for sensor in calibration.sensors.values()])
+        box = layout.box()
+        for sensor in calibration.sensors.values():
+            text.paragraph(box, context, _line(sensor))
         for note in calibration.notes:
             text.paragraph(layout, context, note, icon="INFO")
 
 
-def _row(sensor: Any) -> tuple[str, str]:
-    values = tr("quality {quality}, {gravity} m/s² at rest")
-    values = values.format(quality=f"{sensor.quality:.0%}", gravity=f"{sensor.gravity:.2f}")
-    return shown_site(sensor.site), values
+def _line(sensor: Any) -> str:
+    line = tr("{site}: quality {quality}, {gravity} m/s² at rest")
+    return line.format(
+        site=tr(shown_site(sensor.site)),
+        quality=f"{sensor.quality:.0%}",
+        gravity=f"{sensor.gravity:.2f}",
+    )
 
 
 CLASSES = (SPARSEMOCAP_PT_calibration,)

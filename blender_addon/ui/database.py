@@ -167,6 +167,7 @@ def _contents(layout: UILayout, context: Context, settings: SPARSEMOCAP_PG_setti
     else:
         text.facts(
             layout,
+            context,
             [
                 ("Clips", f"{database.num_clips:,}"),
                 ("Length", f"{database.minutes:.1f} min"),

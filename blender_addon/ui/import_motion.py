@@ -97,7 +97,7 @@ def _draw_summary(
             rows.append(("Frames", f"{summary.num_frames:,}"))
             rows.append(("Length", text.duration((summary.num_frames - 1) / rate_hz)))
         rows.append(("Size", f"{size_m:.3g} m"))
-        text.facts(layout, rows)
+        text.facts(layout, context, rows)
         if not USUAL_SIZES_M[0] <= size_m <= USUAL_SIZES_M[1]:
             text.paragraph(
                 layout, context, "This is not the size of a person: check the unit", icon="ERROR"

@@ -6,6 +6,7 @@ from __future__ import annotations
 from bpy.types import Context, Panel, UILayout
 
 from ..scene import live as live_scene
+from ..scene import prompt
 from ..scene.armature import is_ours
 from ..scene.settings import settings_of
 from ..scene.translations import tr
@@ -20,7 +21,7 @@ from ..session.port_scanner import port_scanner
 from . import sensors as sensor_panels
 from . import text
 from .calibrate import is_calibrating
-from .step import StepPanel, action_button, job_is_running, redraw_soon
+from .step import StepPanel, action_button, job_is_running, redraw_soon, waits_for
 
 
 class SPARSEMOCAP_PT_live(StepPanel, Panel):
@@ -97,7 +98,7 @@ def _session(layout: UILayout, context: Context, session: LiveSession) -> None:
     _character(layout, context)
     _live(layout, context, session)
     _recording(layout, context, state)
-    _figures(layout, session)
+    _figures(layout, context, session)
 
 
 def _character(layout: UILayout, context: Context) -> None:
@@ -122,6 +123,8 @@ def _live(layout: UILayout, context: Context, session: LiveSession) -> None:
     reason = missing_file(settings.method, settings.database, settings.training.model)
     if not reason and not session.state.sensors:
         reason = "Waiting for data"
+    if not reason:
+        reason = waits_for(sensors.STARTING_LIVE, sensors.SAVING_TAKE)
     if session.is_live_wanted:
         row = layout.row()
         row.scale_y = 1.5
@@ -143,17 +146,23 @@ def _recording(layout: UILayout, context: Context, state: LiveState) -> None:
             is_ready=True, has_details=False,
         )  # fmt: skip
     else:
+        left_s = prompt.countdown_s()
         row = layout.row()
         row.scale_y = 1.5
         row.enabled = not is_calibrating()
-        row.operator("sparse_mocap.record_or_stop", text="Record", icon="REC")
+        row.operator(
+            "sparse_mocap.record_or_stop",
+            text=tr("Cancel: starts in {seconds} s").format(seconds=left_s) if left_s else "Record",
+            icon="X" if left_s else "REC",
+            depress=left_s > 0,
+        )
     row = layout.row(align=True)
     row.enabled = not is_recording
     row.prop(settings, "countdown_s")
     row.prop(settings, "record_plays", text="", icon="PLAY", toggle=True)
 
 
-def _figures(layout: UILayout, session: LiveSession) -> None:
+def _figures(layout: UILayout, context: Context, session: LiveSession) -> None:
     """Always the same rows."""
     state, quality = session.state, session.state.quality
     is_shown = session.is_live_wanted and quality.num_poses > 0 and not state.no_readings
@@ -165,7 +174,7 @@ def _figures(layout: UILayout, session: LiveSession) -> None:
         ("Skipped", skipped if is_shown else "-"),
         ("Recorded", recorded),
     ]
-    text.facts(layout, rows)
+    text.facts(layout, context, rows)
 
 
 class SPARSEMOCAP_PT_live_messages(StepPanel, Panel):

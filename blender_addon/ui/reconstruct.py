@@ -21,6 +21,14 @@ from . import text
 from .step import StepPanel, action_button, job_is_running
 
 _MOST_PARTS = 4  # poor ones
+_PART_SETTINGS = (
+    "range_begin_s",
+    "range_end_s",
+    "smooth_s",
+    "largest_error_deg",
+    "largest_error_cm",
+)
+_FOOT_SETTINGS = ("least_certainty", "fastest_foot_mps", "highest_foot_m")
 
 
 class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
@@ -47,12 +55,12 @@ class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
         if len(preset_items(settings.method)) > 1:
             layout.prop(settings, "preset")
         _quality(layout, settings)
-        layout.prop(settings, "calibration")
+        text.setting(layout, context, settings, "calibration")
         layout.separator()
         character(layout, context)
         layout.prop(settings, "start_frame")
         if settings.target is not None and not is_ours(settings.target):
-            layout.prop(settings, "limbs")
+            text.setting(layout, context, settings, "limbs")
             layout.prop(settings, "foot_lock")
         column = layout.column(heading="Keys")
         column.prop(settings, "whole_frames")
@@ -72,7 +80,7 @@ class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
 def character(layout: UILayout, context: Context) -> None:
     """Whom the takes and the live preview move."""
     settings = settings_of(context.scene)
-    layout.prop(settings, "target", icon="ARMATURE_DATA")
+    text.setting(layout, context, settings, "target", icon="ARMATURE_DATA")
     if settings.target is None:
         text.paragraph(layout, context, "Empty: the add-on makes a figure", icon="INFO")
         if any(is_ours(obj) for obj in context.view_layer.objects):
@@ -97,9 +105,7 @@ class SPARSEMOCAP_PT_keys(StepPanel, Panel):
     def draw(self, context: Context) -> None:
         """The range, smoothing and reduction."""
         settings = settings_of(context.scene)
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = _numbers(self.layout, context, settings, *_PART_SETTINGS)
         layout.prop(settings, "use_range")
         column = layout.column(align=True)
         column.active = settings.use_range
@@ -130,14 +136,11 @@ class SPARSEMOCAP_PT_foot_lock(StepPanel, Panel):
     def draw(self, context: Context) -> None:
         """The floor and the thresholds."""
         settings = settings_of(context.scene)
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = _numbers(self.layout, context, settings, *_FOOT_SETTINGS)
         layout.active = settings.foot_lock > 0.0
-        layout.prop(settings, "floor")
-        layout.prop(settings, "least_certainty")
-        layout.prop(settings, "fastest_foot_mps")
-        layout.prop(settings, "highest_foot_m")
+        text.setting(layout, context, settings, "floor")
+        for name in _FOOT_SETTINGS:
+            layout.prop(settings, name)
 
 
 class SPARSEMOCAP_PT_options(StepPanel, Panel):
@@ -159,6 +162,16 @@ class SPARSEMOCAP_PT_options(StepPanel, Panel):
             split.prop(option, "value", text="")
             row.operator("sparse_mocap.remove_option", text="", icon="X").index = index
         self.layout.operator("sparse_mocap.add_option", icon="ADD")
+
+
+def _numbers(
+    layout: UILayout, context: Context, settings: SPARSEMOCAP_PG_settings, *names: str
+) -> UILayout:
+    """Where settings have their names beside them, or inside where there is no room."""
+    labels = (settings.bl_rna.properties[name].name for name in names)
+    layout.use_property_split = text.has_room_beside(context, *labels)
+    layout.use_property_decorate = False
+    return layout
 
 
 def _quality(layout: UILayout, settings: SPARSEMOCAP_PG_settings) -> None:
@@ -187,7 +200,7 @@ def _performed(layout: UILayout, context: Context) -> None:
         ("Frames", tr("{first} to {last}").format(first=f"{first:.0f}", last=f"{last:.0f}")),
         ("Match", tr(facts.match)),
     ]
-    text.facts(layout, rows)
+    text.facts(layout, context, rows)
     _poor(layout, context, facts)
     if job_is_running(PLACING_AGAIN):
         action_button(layout, "sparse_mocap.update_action", "NONE", PLACING_AGAIN, is_ready=True)

@@ -40,6 +40,14 @@ def job_is_running(label: str) -> bool:
     return job is not None and job.label == label
 
 
+def waits_for(*but: str) -> str:
+    """Why a button is grey while a job is running, other than those with such labels."""
+    job = jobs.current()
+    if job is None or job.label in but:
+        return ""
+    return tr("Waits for: {job}").format(job=tr(job.label))
+
+
 def action_button(
     layout: UILayout,
     operator: str,
@@ -65,7 +73,7 @@ def action_button(
     row.enabled = is_ready and job is None
     row.operator(operator, icon=icon)
     if job is not None and has_details:
-        layout.label(text=tr("Waits for: {job}").format(job=tr(job.label)), icon="SORTTIME")
+        layout.label(text=waits_for(), icon="SORTTIME")
 
 
 def _progress(layout: UILayout, job: Job) -> None:

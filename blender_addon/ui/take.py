@@ -109,6 +109,7 @@ def _contents(layout: UILayout, context: Context, path: str) -> None:
     else:
         text.facts(
             layout,
+            context,
             [
                 ("Duration", text.duration(take.duration_s)),
                 ("Rate", f"{take.rate_hz:.4g} Hz"),

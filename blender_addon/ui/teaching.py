@@ -56,6 +56,7 @@ def _outcome(box: UILayout, context: Context, database: str) -> None:
         return
     text.facts(
         box,
+        context,
         [
             ("Taught", taught.name),
             ("Agreement", f"{tr(taught.quality)} ({taught.correlation:.2f})"),

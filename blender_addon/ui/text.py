@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable
+from typing import Any
 
 import blf
 from bpy.types import Context, UILayout
@@ -13,6 +14,11 @@ from ..scene.translations import tr, tr_line
 
 _FONT = 0  # the interface's
 _MARGIN_PX = 76.0  # of panel and box, and the scroll bar
+_PANEL_MARGIN_PX = 40.0  # without a box
+_NAME_SHARE = 0.4  # of a row, for a setting's name beside its value
+_NAME_MARGIN_PX = 10.0
+_LONGEST_NAME_SHARE = 0.6
+_NAME_GAP_PX = 8.0
 _ICON_PX = 24.0
 _USUAL_WIDTH_PX, _USUAL_POINTS = 260.0, 11
 _NARROWEST_PX = 80.0
@@ -21,18 +27,43 @@ _WIDE_PX = 320.0
 
 def is_wide(context: Context) -> bool:
     """Whether the sidebar has room for more than what is needed."""
+    return context.region is not None and _width_px(context) >= _WIDE_PX
+
+
+def has_room_beside(context: Context, *names: str) -> bool:
+    """Whether names of settings fit beside their values."""
+    room = _NAME_SHARE * (_width_px(context) - _PANEL_MARGIN_PX) - _NAME_MARGIN_PX
+    return max(map(_length_of(context), map(tr, names))) <= room
+
+
+def setting(layout: UILayout, context: Context, owner: Any, name: str, icon: str = "NONE") -> None:
+    """A setting with its name beside it, or above it where there is no room."""
+    label = owner.bl_rna.properties[name].name
+    if has_room_beside(context, label):
+        layout.prop(owner, name, icon=icon)
+        return
+    column = layout.column(align=True)
+    column.label(text=label)
+    column.prop(owner, name, text="", icon=icon)
+
+
+def _width_px(context: Context) -> float:
+    """Of the sidebar, in pixels of an interface that is not scaled."""
     scale = context.preferences.system.ui_scale or 1.0  # 0 in the background
-    return context.region is not None and context.region.width / scale >= _WIDE_PX
+    return context.region.width / scale if context.region is not None else _USUAL_WIDTH_PX
+
+
+def _length_of(context: Context) -> Callable[[str], float]:
+    """Measures a text in such pixels."""
+    styles = context.preferences.ui_styles
+    blf.size(_FONT, styles[0].widget.points if len(styles) else _USUAL_POINTS)
+    return lambda line: float(blf.dimensions(_FONT, line)[0])
 
 
 def paragraph(layout: UILayout, context: Context, text: str, icon: str = "NONE") -> None:
     """Show the text, wrapped to the width of the sidebar."""
-    scale = context.preferences.system.ui_scale or 1.0  # 0 in the background
-    width = context.region.width / scale if context.region is not None else _USUAL_WIDTH_PX
-    room = width - _MARGIN_PX - (0.0 if icon == "NONE" else _ICON_PX)
-    styles = context.preferences.ui_styles
-    blf.size(_FONT, styles[0].widget.points if len(styles) else _USUAL_POINTS)
-    lines = wrapped(tr(text), lambda line: blf.dimensions(_FONT, line)[0], max(room, _NARROWEST_PX))
+    room = _width_px(context) - _MARGIN_PX - (0.0 if icon == "NONE" else _ICON_PX)
+    lines = wrapped(tr_line(text), _length_of(context), max(room, _NARROWEST_PX))
     column = layout.column(align=True)
     column.scale_y = 0.8
     for index, line in enumerate(lines):
@@ -70,15 +101,17 @@ def error(layout: UILayout, context: Context, text: str) -> None:
     """Show an error."""
     box = layout.box()
     box.alert = True
-    paragraph(box, context, tr_line(text), icon="ERROR")
+    paragraph(box, context, text, icon="ERROR")
 
 
-def facts(layout: UILayout, rows: list[tuple[str, str]]) -> None:
+def facts(layout: UILayout, context: Context, rows: list[tuple[str, str]]) -> None:
     """Show names and values in two columns; values are shown as they are."""
     box = layout.box().column(align=True)
     box.scale_y = 0.85
+    longest = max(map(_length_of(context), (tr(name) for name, _ in rows)))
+    share = (longest + _NAME_GAP_PX) / max(_width_px(context) - _MARGIN_PX, _NARROWEST_PX)
     for name, value in rows:
-        split = box.split(factor=0.42)
+        split = box.split(factor=min(max(share, 0.42), _LONGEST_NAME_SHARE))
         split.label(text=name)
         split.label(text=value, translate=False)
 

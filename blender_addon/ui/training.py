@@ -54,7 +54,7 @@ def _contents(layout: UILayout, context: Context, settings: SPARSEMOCAP_PG_setti
     names = ", ".join(view.name for view in views if view.name)
     rows = [("Types", names)] if names else []
     rows.append(("Frames", str(sum(len(view.points) for view in views))))
-    text.facts(layout, rows)
+    text.facts(layout, context, rows)
     phases = ", ".join(PHASES[phase].replace("_", " ") for phase in found)
     text.paragraph(layout, context, f"{tr('Phases')}: {phases}")
     layout.operator(

@@ -62,6 +62,12 @@ def test_errors_are_german_where_blender_is():
         assert running.endswith("läuft noch: warten oder zuerst abbrechen")
         assert line("Choose a motion database first") == "Zuerst eine Bewegungsdatenbank wählen"
         assert line("walk.bvh:3:1: expected 3 numbers") == "walk.bvh:3:1: expected 3 numbers"
+        assert line("Left Hand moved by 9 cm during bow; hold the pose still") == (
+            "Linke Hand hat sich bei bow um 9 cm bewegt; die Pose still halten"
+        )
+        assert line("/a: b/c.smdb: no such file or folder; check the path") == (
+            "/a: b/c.smdb: diese Datei oder diesen Ordner gibt es nicht; den Pfad prüfen"
+        )
 
 
 def test_every_operator_and_setting_is_in_the_table():

@@ -123,6 +123,22 @@ def test_the_graph_shows_the_readings_around_the_playhead():
     assert not addon("scene.sensor_graph").is_shown()
 
 
+def test_the_graph_says_as_much_as_there_is_room_for():
+    import blf
+
+    first_that_fits = addon("scene.sensor_graph")._first_that_fits
+    white = (1.0, 1.0, 1.0, 1.0)
+    name, long, short = ("Left Wrist", white), ("measured 9.8", white), ("9.8", white)
+    blf.size(0, 11.0)
+    lengths = {part: blf.dimensions(0, part[0])[0] for part in (name, long, short)}
+    room = lengths[name] + lengths[long] + 18.0
+    versions = [[name, long], [name, short], [name]]
+    assert first_that_fits(versions, room, 18.0) == versions[0]
+    assert first_that_fits(versions, room - 1.0, 18.0) == versions[1]
+    assert first_that_fits(versions, lengths[name], 18.0) == versions[2]
+    assert first_that_fits(versions, 1.0, 18.0) == versions[2]
+
+
 def test_without_a_take_there_is_no_graph():
     rigs.named_rig("mixamo")
     assert "take" in error_of(bpy.ops.sparse_mocap.toggle_sensor_graph)

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
+import bpy
 from support import addon
 
 
@@ -24,3 +27,17 @@ def test_words_that_do_not_fit_are_cut_where_paths_may_be():
     assert max(map(len, lines)) <= 12
     assert wrapped("unbelievably long", len, 5) == ["unbel", "ievab", "ly", "long"]
     assert wrapped("wide", lambda line: 9 * len(line), 5) == ["w", "i", "d", "e"]
+
+
+def test_names_stand_beside_values_where_there_is_room():
+    has_room = addon("ui.text").has_room_beside
+    preferences = bpy.context.preferences
+    scale = preferences.system.ui_scale or 1.0
+
+    def in_sidebar(width: float) -> SimpleNamespace:
+        region = SimpleNamespace(width=width * scale)
+        return SimpleNamespace(region=region, preferences=preferences)
+
+    assert has_room(in_sidebar(400), "Speed (m/s)", "Certainty")
+    assert has_room(in_sidebar(120), "To")
+    assert not has_room(in_sidebar(120), "To", "Speed (m/s)")

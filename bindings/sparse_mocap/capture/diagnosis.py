@@ -56,7 +56,8 @@ def why_no_samples(config: LinkConfig, arrived: Sequence[bytes]) -> str:
         )
     advice = "check the protocol"
     if not is_datagram and "://" not in config.port:
-        advice += f" and the baud rate ({config.baud or 'all were tried'}); 0 tries the usual rates"
+        baud = config.baud or "all were tried"
+        advice = f"check the protocol and the baud rate ({baud}); 0 tries the usual rates"
     return f"the data, such as {_shown(data)}, are not of the protocol {config.driver}; {advice}"
 
 

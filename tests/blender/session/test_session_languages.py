@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import ast
+import errno
+import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,7 +15,7 @@ import sparse_mocap
 from sparse_mocap import quality
 from sparse_mocap.capture.link import State
 
-from blender_addon.languages import german
+from blender_addon.languages import german, german_core
 from blender_addon.session import (
     bake,
     calibrating,
@@ -181,12 +183,37 @@ def test_every_report_is_in_the_table(language: str) -> None:
     assert missing == []
 
 
+def _said_by_the_package() -> str:
+    """All its sources, with what is put together from several literals in one piece."""
+    files = [*(ADDON.parent / "bindings/sparse_mocap").rglob("*.py")]
+    files += (ADDON.parent / "core/sparse_mocap").rglob("*.cpp")
+    sources = "".join(path.read_text(encoding="utf-8") for path in files)
+    joined = re.sub(r"[\"']\s+\+?\s*f?[\"']", "", sources)
+    return joined.replace('\\"', '"') + "".join(map(os.strerror, _SYSTEM_ERRORS))
+
+
+_SYSTEM_ERRORS = (errno.ENOENT, errno.EACCES, errno.ENOSPC, errno.EFBIG, errno.EISDIR)
+
+
+@pytest.mark.parametrize("table", [german_core.CORE])
+def test_what_the_package_says_is_said_as_in_the_table(table: dict[str, str]) -> None:
+    said = _said_by_the_package()
+    parts = {
+        part.strip(" :;")
+        for text in table
+        for piece in re.split(r"\{\w+\}", text)
+        for part in piece.split("; ")
+    }
+    assert len(parts) > 40
+    assert [part for part in sorted(parts) if part not in said] == []
+
+
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_nothing_is_in_the_table_that_is_not_shown(language: str) -> None:
     shown = {text for path in SHOWN for _, text in texts_in(path)}
     shown |= {text for path in DEFINED for _, text in definitions_in(path)}
     written = {template for path in _written() for template in _templates_in(path)}
-    left = set(LANGUAGES[language]) - shown - set(known_texts())
+    left = set(LANGUAGES[language]) - shown - set(known_texts()) - set(german_core.CORE)
     left = {text for text in left if re.sub(r"\{\w+\}", "{}", text) not in written}
     assert left <= {"and", "X", "Y", "Z", "None"}
 
