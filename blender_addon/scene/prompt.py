@@ -86,7 +86,9 @@ def _halves(text: str, size: float, room: float) -> list[str]:
     blf.size(_FONT, size)
     if blf.dimensions(_FONT, text)[0] <= room:
         return [text]
-    return textwrap.wrap(text, 2 + len(text) // 2) or [""]
+    widths = range(len(text) // 2, len(text))
+    parts = (textwrap.wrap(text, most, break_long_words=False) for most in widths)
+    return next((halves for halves in parts if len(halves) == 2), [text])
 
 
 def free_view() -> tuple[float, float, float]:

@@ -102,7 +102,7 @@ def _build_form(
     row = column.row(align=True)
     row.prop(settings, "output")
     row.operator("sparse_mocap.choose_output", text="", icon="FILE_FOLDER")
-    column.prop(settings, "exclude")
+    text.setting(column, context, settings, "exclude", margin_px=text.BOX_MARGIN_PX)
     column.prop(settings, "rate_hz")
     column = box.column(heading="Add copies")
     column.use_property_split = True

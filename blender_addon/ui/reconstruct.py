@@ -169,7 +169,9 @@ def _numbers(
 ) -> UILayout:
     """Where settings have their names beside them, or inside where there is no room."""
     labels = (settings.bl_rna.properties[name].name for name in names)
-    layout.use_property_split = text.has_room_beside(context, *labels)
+    layout.use_property_split = text.has_room_beside(
+        context, *labels, margin_px=text.SUBPANEL_MARGIN_PX
+    )
     layout.use_property_decorate = False
     return layout
 

@@ -14,7 +14,7 @@ from ..scene.translations import tr, tr_line
 
 _FONT = 0  # the interface's
 _MARGIN_PX = 76.0  # of panel and box, and the scroll bar
-_PANEL_MARGIN_PX = 40.0  # without a box
+PANEL_MARGIN_PX, SUBPANEL_MARGIN_PX, BOX_MARGIN_PX = 40.0, 62.0, 62.0
 _NAME_SHARE = 0.4  # of a row, for a setting's name beside its value
 _NAME_MARGIN_PX = 10.0
 _LONGEST_NAME_SHARE = 0.6
@@ -30,16 +30,24 @@ def is_wide(context: Context) -> bool:
     return context.region is not None and _width_px(context) >= _WIDE_PX
 
 
-def has_room_beside(context: Context, *names: str) -> bool:
+def has_room_beside(context: Context, *names: str, margin_px: float = PANEL_MARGIN_PX) -> bool:
     """Whether names of settings fit beside their values."""
-    room = _NAME_SHARE * (_width_px(context) - _PANEL_MARGIN_PX) - _NAME_MARGIN_PX
+    room = _NAME_SHARE * (_width_px(context) - margin_px) - _NAME_MARGIN_PX
     return max(map(_length_of(context), map(tr, names))) <= room
 
 
-def setting(layout: UILayout, context: Context, owner: Any, name: str, icon: str = "NONE") -> None:
+def setting(
+    layout: UILayout,
+    context: Context,
+    owner: Any,
+    name: str,
+    *,
+    icon: str = "NONE",
+    margin_px: float = PANEL_MARGIN_PX,
+) -> None:
     """A setting with its name beside it, or above it where there is no room."""
     label = owner.bl_rna.properties[name].name
-    if has_room_beside(context, label):
+    if has_room_beside(context, label, margin_px=margin_px):
         layout.prop(owner, name, icon=icon)
         return
     column = layout.column(align=True)

@@ -116,3 +116,12 @@ def test_a_calibration_that_is_none_is_said_in_one_line(tmp_path):
 
 def test_without_sensors_there_is_nothing_to_calibrate():
     assert "Connect" in error_of(bpy.ops.sparse_mocap.calibrate_sensors)
+
+
+def test_what_to_do_stands_on_two_lines_where_one_is_too_short():
+    halves = addon("scene.prompt")._halves
+    text = "five times, thumbs forward, upper arms still"
+    assert halves(text, 32.0, 1e6) == [text]
+    assert halves(text, 32.0, 10.0) == ["five times, thumbs", "forward, upper arms still"]
+    assert halves("word", 32.0, 1.0) == ["word"]
+    assert halves("", 32.0, 1.0) == [""]
