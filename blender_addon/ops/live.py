@@ -18,7 +18,7 @@ from ..scene.performance import extend_scene, perform_steps
 from ..scene.settings import scene_choice, settings_of
 from ..scene.takes import add_take
 from ..scene.targets import chosen_armatures, own_figure, placement_of
-from ..scene.translations import tr_line
+from ..scene.translations import CONTEXT, tr_line
 from ..session import live, sensors
 from ..session.errors import InputError
 from ..session.job import Job
@@ -62,6 +62,7 @@ class SPARSEMOCAP_OT_connect_sensors(NowOperator, Operator):
 
     bl_idname = "sparse_mocap.connect_sensors"
     bl_label = "Connect"
+    bl_translation_context = CONTEXT
     bl_description = "Connect to the sensors at this port"
     bl_options = {"REGISTER"}
 

@@ -10,13 +10,16 @@ import bpy
 from ..languages import german, german_core, german_reports
 
 _ADDON = __package__.rpartition(".")[0]
-_CONTEXTS = ("*", "Operator")
+CONTEXT = "Sparse Mocap"
+"""Where Blender's own translation of a text means something else."""
+_CONTEXTS = ("*", "Operator", CONTEXT)
 _LOCALES = ("de", "de_DE")  # as Blender calls it before and since 4.0, or the other way round
 
 
 def tr(text: str) -> str:
     """The text in the language of Blender's interface, or as it is."""
-    return str(bpy.app.translations.pgettext_iface(text))
+    ours = str(bpy.app.translations.pgettext_iface(text, CONTEXT))
+    return ours if ours != text else str(bpy.app.translations.pgettext_iface(text))
 
 
 def tr_line(line: str) -> str:

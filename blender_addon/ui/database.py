@@ -108,7 +108,7 @@ def _build_form(
     column.use_property_split = True
     column.use_property_decorate = False
     for name, label in (("mirror", "Mirrored"), ("reverse", "Reversed"), ("tempos", "Tempos")):
-        column.prop(settings, name, text=label)
+        column.prop(settings, name, text=tr(label), translate=False)
     box.prop(settings, "strict")  # too long for a column of a narrow sidebar
     if settings.source and not settings.output:
         path = default_output(bpy.path.abspath(settings.source))

@@ -98,7 +98,7 @@ class SPARSEMOCAP_PT_mapping(StepPanel, Panel):
         row.operator("sparse_mocap.remember_mapping", icon="CHECKMARK")
         row.operator("sparse_mocap.forget_mapping", icon="X")
         row = layout.row(align=True)
-        row.operator("sparse_mocap.load_mapping", text="Load", icon="IMPORT")
+        row.operator("sparse_mocap.load_mapping", text=tr("Load"), translate=False, icon="IMPORT")
         row.operator("sparse_mocap.save_mapping", text="Save", icon="EXPORT")
 
 

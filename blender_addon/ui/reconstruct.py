@@ -62,7 +62,7 @@ class SPARSEMOCAP_PT_reconstruct(StepPanel, Panel):
         if settings.target is not None and not is_ours(settings.target):
             text.setting(layout, context, settings, "limbs")
             layout.prop(settings, "foot_lock")
-        column = layout.column(heading="Keys")
+        column = layout.column(heading=tr("Keys"), translate=False)
         column.prop(settings, "whole_frames")
         column.prop(settings, "extend_scene")
         missing = missing_file(settings.method, settings.database, settings.training.model)

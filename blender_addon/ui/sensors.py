@@ -88,7 +88,7 @@ def _sensor(layout: UILayout, sensor: dict[str, Any]) -> None:
 
 def _port(layout: UILayout, context: Context, port: Any, index: int) -> None:
     box = layout.box()
-    row = box.row(align=True)
+    row = _split(box).row(align=True)
     row.prop(port, "port", icon="PLUGIN", text="" if index >= 0 else "Port")
     if index < 0:
         row.operator("sparse_mocap.find_sensors", text="", icon="FILE_REFRESH")

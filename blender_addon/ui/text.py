@@ -16,7 +16,7 @@ _FONT = 0  # the interface's
 _MARGIN_PX = 76.0  # of panel and box, and the scroll bar
 PANEL_MARGIN_PX, SUBPANEL_MARGIN_PX, BOX_MARGIN_PX = 40.0, 62.0, 62.0
 _NAME_SHARE = 0.4  # of a row, for a setting's name beside its value
-_NAME_MARGIN_PX = 10.0
+_NAME_MARGIN_PX = 12.0
 _LONGEST_NAME_SHARE = 0.6
 _NAME_GAP_PX = 8.0
 _ICON_PX = 24.0
@@ -120,7 +120,7 @@ def facts(layout: UILayout, context: Context, rows: list[tuple[str, str]]) -> No
     share = (longest + _NAME_GAP_PX) / max(_width_px(context) - _MARGIN_PX, _NARROWEST_PX)
     for name, value in rows:
         split = box.split(factor=min(max(share, 0.42), _LONGEST_NAME_SHARE))
-        split.label(text=name)
+        split.label(text=tr(name), translate=False)
         split.label(text=value, translate=False)
 
 

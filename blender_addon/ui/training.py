@@ -92,7 +92,7 @@ def _phone(box: UILayout, settings: SPARSEMOCAP_PG_settings) -> None:
     column.use_property_decorate = False
     column.prop(settings.training, "phone_site")
     row = box.row(align=True)
-    row.operator("sparse_mocap.import_phone", text="Load", icon="IMPORT")
+    row.operator("sparse_mocap.import_phone", text=tr("Load"), translate=False, icon="IMPORT")
     row.operator("sparse_mocap.use_phone_stream", text="Stream", icon="LINKED")
 
 

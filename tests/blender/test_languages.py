@@ -41,6 +41,10 @@ def test_texts_are_german_where_blender_is():
     with german():
         assert tr("Live Sensors") == "Sensoren live"
         assert tr("something else") == "something else"
+        assert tr("Reversed") == "Rückwärts"  # not as Blender calls what is inverted
+        connect = bpy.ops.sparse_mocap.connect_sensors.get_rna_type()
+        shown = bpy.app.translations.pgettext_iface(connect.name, connect.translation_context)
+        assert shown == "Verbinden"
         in_operators = bpy.app.translations.pgettext_iface("Reconstruct", "Operator")
         assert in_operators == "Rekonstruieren"
         installed.unregister()
