@@ -107,7 +107,7 @@ LABELS = {
     "Path": "Pfad",
     "File": "Datei",
     "Save as": "Ziel",
-    "Exclude": "Auslassen",
+    "Exclude": "Ausschließen",
     "Frame rate": "Bildrate",
     "Add copies": "Kopien",
     "Mirror": "Spiegeln",

@@ -33,7 +33,7 @@ _WORDS = (0.95, 0.95, 0.95, 1.0)
 
 _Part = tuple[str, Colour]
 
-_ROW_PX, _GAP_PX, _MARGIN_PX, _FONT_PX = 46.0, 6.0, 14.0, 11.0
+_ROW_PX, _GAP_PX, _MARGIN_PX, _FONT_PX, _LABEL_PX = 52.0, 6.0, 14.0, 11.0, 17.0
 _BOTTOM_PX = 40.0  # above the settings of the last operator
 _LEAST_TOP_MPS2 = 15.0
 
@@ -119,7 +119,7 @@ def _draw() -> None:
         low = (left, bottom + number * (row + _GAP_PX * scale))
         high = (right, low[1] + row)
         rectangle(low, high, _GROUND)
-        _plot(curves, sensor, low, high, top)
+        _plot(curves, sensor, low, (right, high[1] - _LABEL_PX * scale), top)
         _write(curves, sensor, shown_site(site), low, high, scale)
 
 
