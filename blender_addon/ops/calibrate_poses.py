@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+import math
+
 import bpy
 from bpy.types import Context, Event, Operator
 
 from ..scene import pose_guide as guide
 from ..scene.settings import settings_of
+from ..session import pose_guide
 from ..session.calibrating import Calibrated
 from ..session.job import Job
 from ..session.new_files import takes_folder
@@ -46,6 +49,12 @@ class SPARSEMOCAP_OT_calibrate_by_poses(JobOperator, Operator):
         yield 0.0
         use_calibration(self, context, result)
         return f"Calibrated {len(result.calibration.sensors)} trackers, saved as {result.path}"
+
+    def shown(self, job: Job) -> tuple[object, ...]:
+        """The pose and its countdown too."""
+        now = pose_guide.shown
+        countdown = (now.pose, now.is_held, math.ceil(now.seconds), now.problem)
+        return (*super().shown(job), *countdown)
 
     def _end(self, context: Context) -> None:
         super()._end(context)

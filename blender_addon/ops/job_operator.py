@@ -19,7 +19,7 @@ from ..session.job import Cancelled, Job
 from ..session.steps import Slices, Steps, finished
 
 _TICK_S = 0.1
-_SLICE_S = 0.05  # of work on the main thread, between which the window is drawn
+_SLICE_S = 0.03  # of work on the main thread, between which the window is drawn
 
 
 class JobOperator:
@@ -32,6 +32,7 @@ class JobOperator:
     _job: Job | None = None
     _slices: Slices[str] | None = None
     _timer: Any = None
+    _last_shown: tuple[object, ...] = ()
     steps_label = "Setting keys"  # shown while apply() runs
     report: Callable[[set[str], str], None]  # the operator's own
     properties: Any  # the operator's own
@@ -126,12 +127,20 @@ class JobOperator:
         self._timer = manager.event_timer_add(_TICK_S / 10.0, window=context.window)
         return slices
 
+    def shown(self, job: Job) -> tuple[object, ...]:
+        """What the views show of the job; they are redrawn when it changes."""
+        return round(100 * job.fraction), job.what, job.is_cancelled, job.is_running
+
     def _show_progress(self, context: Context, job: Job) -> None:
         slices = self._slices
-        if slices is None:
-            compat.redraw_views(context)  # the sidebar shows the job
         fraction = job.fraction if slices is None else slices.fraction
         label = job.label if slices is None else self.steps_label
+        shown = self.shown(job) if slices is None else (round(100 * fraction), label)
+        if shown == self._last_shown:  # drawing takes time from the work
+            return
+        self._last_shown = shown
+        if slices is None:
+            compat.redraw_views(context)  # the sidebar shows the job
         compat.show_status(context, label, fraction)
         if not compat.HAS_PROGRESS_BAR:
             context.window_manager.progress_update(int(100 * fraction))
@@ -149,6 +158,7 @@ class JobOperator:
             if not compat.HAS_PROGRESS_BAR:
                 manager.progress_end()
             compat.clear_status(context)
+            compat.redraw_views(context)
 
     def _finished(self, message: str) -> set[str]:
         log.info("%s", message)

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+import os
+import sys
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 from .errors import InputError
@@ -13,6 +16,7 @@ Progress = Callable[[int, int, str], bool]
 """Called with steps done, total steps and the current item; returns False to cancel."""
 
 _JOIN_TIMEOUT_S = 10.0
+_NICENESS = 5
 
 _current: Job | None = None
 
@@ -33,7 +37,7 @@ class Job:
         self._result: Any = None
         self._error: BaseException | None = None
         self._listener: Callable[[], None] | None = None
-        self._thread = threading.Thread(target=self._run, name=f"Sparse Mocap: {label}")
+        self._thread = threading.Thread(target=self._run_beside, name=f"Sparse Mocap: {label}")
         self._thread.daemon = True  # Blender may quit meanwhile
 
     @property
@@ -80,6 +84,10 @@ class Job:
             raise Cancelled("Cancelled") from self._error
         raise self._error
 
+    def _run_beside(self) -> None:
+        _step_back()
+        self._run()
+
     def _run(self) -> None:
         try:
             self._result = self._work(self._on_progress)
@@ -94,6 +102,15 @@ class Job:
         if self._listener is not None:
             self._listener()
         return not self._stop.is_set()
+
+
+def _step_back() -> None:
+    """Let the window be drawn before this thread, and those it starts, go on computing."""
+    if sys.platform != "linux":  # only there threads have priorities that others inherit
+        return
+    with suppress(OSError):
+        own = os.getpriority(os.PRIO_PROCESS, 0)
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), own + _NICENESS)
 
 
 def current() -> Job | None:

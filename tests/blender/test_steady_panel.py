@@ -114,3 +114,20 @@ def test_a_calibration_is_not_asked_to_stop_its_own_recording():
         assert not any("stop_take" in line for line in _buttons(state))
     finally:
         jobs.current = before
+
+
+def test_views_are_redrawn_only_when_what_they_show_has_changed():
+    job_operator = addon("ops.job_operator")
+    compat, redrawn = job_operator.compat, []
+    operator, redraw = job_operator.JobOperator(), compat.redraw_views
+    compat.redraw_views = redrawn.append
+    job = SimpleNamespace(label="Working", fraction=0.5, what="", is_cancelled=False)
+    job.is_running = True
+    try:
+        for fraction, what, wanted in ((0.5, "", 1), (0.504, "", 1), (0.51, "", 2), (0.51, "a", 3)):
+            job.fraction, job.what = fraction, what
+            operator._show_progress(bpy.context, job)
+            assert len(redrawn) == wanted
+    finally:
+        compat.redraw_views = redraw
+        compat.clear_status(bpy.context)

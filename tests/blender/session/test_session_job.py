@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+import os
+import sys
 import threading
 
 import pytest
@@ -33,6 +35,24 @@ def test_start_works_on_another_thread():
     job.start()
     job.join()
     assert job.result() is False
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="threads have no priority of their own")
+def test_the_window_goes_before_the_work():
+    own = os.getpriority(os.PRIO_PROCESS, 0)
+
+    def work(progress):
+        inherited = []
+        thread = threading.Thread(target=lambda: inherited.append(os.getpriority(0, 0)))
+        thread.start()
+        thread.join()
+        return [os.getpriority(os.PRIO_PROCESS, 0), *inherited]
+
+    job = Job("Working", work)
+    job.start()
+    job.join()
+    assert job.result() == [min(own + 5, 19)] * 2
+    assert os.getpriority(os.PRIO_PROCESS, 0) == own
 
 
 def test_cancel_ends_the_work():
