@@ -50,7 +50,7 @@ class Mover:
     @cached_property
     def to_location(self) -> Floats:
         """(3, 3) from rows in the armature's space to rows of the location's three numbers."""
-        return np.linalg.inv(self.R_armature_location).T
+        return np.asarray(np.linalg.inv(self.R_armature_location).T)
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Placed:
     @cached_property
     def to_location(self) -> Floats:
         """(3, 3) from rows in the followed control's space to rows of those three numbers."""
-        return np.linalg.inv(self.R_followed_location).T
+        return np.asarray(np.linalg.inv(self.R_followed_location).T)
 
 
 @dataclass(frozen=True)
