@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,7 +39,8 @@ class Performance:
     """A take for each thing that the calibration may ask for."""
     turns: np.ndarray
     """(S, 3, 3) R_site_sensor."""
-    folder: Path
+    body: Path | None = None
+    """The file of the motion."""
 
 
 def guided(folder: Path) -> Performance:
@@ -45,29 +48,25 @@ def guided(folder: Path) -> Performance:
     import sparse_mocap
 
     path, turns = folder / "guided.csv", folder / "turns.npy"
-    _make("guided_body.py", path, turns, _ELBOWS_S, _SQUATS_S, _END_S)
+    _make_guided(path, turns, _ELBOWS_S, _SQUATS_S, _END_S)
     take = sparse_mocap.read_take(path)
     parts = {
         "stand": part_of(take, 0.5, _ELBOWS_S - 0.5),
         "bend_elbows": part_of(take, _ELBOWS_S, _SQUATS_S),
         "squat": part_of(take, _SQUATS_S, _END_S),
     }
-    return Performance(take, parts, np.load(turns), folder)
+    return Performance(take, parts, np.load(turns), folder / "body.bvh")
 
 
-def held(folder: Path) -> Performance:
+def held() -> Performance:
     """Each of the calibration poses, with trackers at TRACKER_SITES."""
-    import sparse_mocap
-    from sparse_mocap.pose_calibration import calibration_poses
-
-    path, planted = folder / "held.csv", folder / "planted.npz"
-    _make("held_poses.py", path, planted, _FIRST_POSE_S, _TAKEN_S, _HELD_S)
-    take = sparse_mocap.read_take(path)
-    begin_s, parts = _FIRST_POSE_S + _TAKEN_S, {}
-    for name, _, _ in calibration_poses():
-        parts[name] = part_of(take, begin_s + _EDGE_S, begin_s + _HELD_S - _EDGE_S)
-        begin_s += _TAKEN_S + _HELD_S
-    return Performance(take, parts, np.load(planted)["turns"], folder)
+    maker = _loaded("held_poses")
+    take = maker.recorded(_FIRST_POSE_S, _TAKEN_S, _HELD_S)
+    parts = {
+        name: part_of(take, begin_s + _EDGE_S, end_s - _EDGE_S)
+        for name, (begin_s, end_s) in maker.spans(_FIRST_POSE_S, _TAKEN_S, _HELD_S)
+    }
+    return Performance(take, parts, maker.planted().matrices())
 
 
 def follows_phases(performance: Performance, calibrating: Any, jobs: Any) -> Callable[[], Any]:
@@ -94,15 +93,25 @@ def follows_poses(performance: Performance, pose_guide: Any) -> Callable[[], Any
     return lambda: performance.parts.get(pose_guide.shown.pose, first)
 
 
-def _make(maker: str, *arguments: object) -> None:
+def _loaded(name: str) -> Any:
+    spec = importlib.util.spec_from_file_location(name, _MAKERS / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = sys.modules[name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def _make_guided(*arguments: object) -> None:
+    """By a Python with SciPy, which Blender's may lack."""
     python = os.environ.get("SPARSE_MOCAP_TEST_PYTHON") or shutil.which("python") or "python3"
     done = subprocess.run(
-        [python, _MAKERS / maker, *map(str, arguments)],
+        [python, _MAKERS / "guided_body.py", *map(str, arguments)],
         env=os.environ | {"PYTHONPATH": os.environ.get("SPARSE_MOCAP_TEST_PATH") or _SOURCES},
         capture_output=True, text=True, check=False,
     )  # fmt: skip
-    if "No module named 'scipy'" in done.stderr or "No module named 'numpy'" in done.stderr:
+    if "No module named" in done.stderr:
         from support import Skipped
 
-        raise Skipped("SciPy or NumPy is not installed")
+        raise Skipped("there is no Python with SciPy and the package")
     assert done.returncode == 0, done.stderr

@@ -83,7 +83,7 @@ def test_a_character_follows_trackers_live(tmp_path):
 
 
 def test_trackers_are_calibrated_by_poses(tmp_path):
-    performed, guide = held(tmp_path), addon("session.pose_guide")
+    performed, guide = held(), addon("session.pose_guide")
     before = guide.TIMES
     guide.TIMES = guide.Times(READY_S, HOLD_S)
     doing = follows_poses(performed, guide)

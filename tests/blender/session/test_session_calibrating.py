@@ -119,7 +119,7 @@ def test_not_while_something_is_recorded(session, tmp_path):
 def test_live_poses_of_calibrated_sensors_are_those_of_ideal_ones(performance, tmp_path):
     """Whether the samples are corrected before or in the stream does not matter."""
     take, path = performance.take, tmp_path / "db.smdb"
-    sparse_mocap.build_database([performance.folder / "body.bvh"], path)
+    sparse_mocap.build_database([performance.body], path)
     database = sparse_mocap.MotionDatabase(path)
     found = {
         site: sparse_mocap.SensorCalibration(site, 1.03, R, 1.0, np.zeros(3), 1.0, True, True,

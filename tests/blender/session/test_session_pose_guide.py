@@ -26,8 +26,8 @@ TIMES = pose_guide.Times(READY_S, HOLD_S)
 
 
 @pytest.fixture(scope="module")
-def performance(tmp_path_factory):
-    return held(tmp_path_factory.mktemp("held"))
+def performance():
+    return held()
 
 
 @pytest.fixture
