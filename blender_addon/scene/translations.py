@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 import bpy
 
@@ -27,8 +28,14 @@ def tr_line(line: str) -> str:
 
     Such lines are made where nothing knows of Blender, with names and numbers filled in.
     """
-    if bpy.app.translations.locale not in _LOCALES:
+    locale = bpy.app.translations.locale
+    if locale not in _LOCALES:
         return line
+    return _said(line, (locale, bpy.context.preferences.view.use_translate_interface))
+
+
+@lru_cache(maxsize=512)  # panels ask for the same lines at each redraw
+def _said(line: str, _language: tuple[str, bool]) -> str:
     said = tr(line)
     if said != line:
         return said
@@ -70,8 +77,10 @@ def register() -> None:
     """Register the translations."""
     table = {(context, text): said for text, said in german.TEXTS.items() for context in _CONTEXTS}
     bpy.app.translations.register(_ADDON, dict.fromkeys(_LOCALES, table))
+    _said.cache_clear()
 
 
 def unregister() -> None:
     """Unregister them."""
     bpy.app.translations.unregister(_ADDON)
+    _said.cache_clear()
