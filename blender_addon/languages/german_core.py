@@ -96,6 +96,10 @@ CORE = {
     '{path}: is not a calibration file; it must be an object with "format": "{format}"': (
         "{path}: ist keine Kalibrierung; „format“ muss „{format}“ sein"
     ),
+    "{site}: the recordings overlap by too little; record the event well inside both": (
+        "{site}: Bewegung und Aufnahme überlappen sich zu wenig; das Klatschen weiter in die Mitte "
+        "beider legen"
+    ),
     # Files
     "{path}: no such file or folder; check the path": (
         "{path}: diese Datei oder diesen Ordner gibt es nicht; den Pfad prüfen"

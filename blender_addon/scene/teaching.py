@@ -34,8 +34,11 @@ class SPARSEMOCAP_PG_teaching(PropertyGroup):
         ),
     )
     clap_from_s: FloatProperty(
-        name="From", description="When the clap begins, in seconds of the take", min=0.0
+        name="From (s)", description="When the clap begins, in seconds of the take", min=0.0
     )
     clap_to_s: FloatProperty(
-        name="To", description="When the clap is over, in seconds of the take", min=0.0, default=2.0
+        name="To (s)",
+        description="When the clap is over, in seconds of the take",
+        min=0.0,
+        default=2.0,
     )

@@ -27,18 +27,18 @@ def draw_teaching(layout: UILayout, context: Context) -> None:
     row = box.row()
     row.alignment = "LEFT"
     icon = "TRIA_DOWN" if is_open else "TRIA_RIGHT"
-    row.prop(teaching, "is_open", icon=icon, emboss=False)
+    is_pressed = teaching.is_open  # which would make its text white
+    row.prop(teaching, "is_open", icon=icon, emboss=False, invert_checkbox=is_pressed)
     if not is_open:
         return
-    column = box.column()
-    column.use_property_split = True
-    column.use_property_decorate = False
+    column = _column(box)
     for name, chooser in CHOOSERS.items():
         row = column.row(align=True)
         row.prop(teaching, name)
         row.operator(chooser, text="", icon="FILE_FOLDER")
-    column.prop(teaching, "has_clap")
+    box.prop(teaching, "has_clap")  # too long for a column of a narrow sidebar
     if teaching.has_clap:
+        column = _column(box)
         column.prop(teaching, "clap_from_s")
         column.prop(teaching, "clap_to_s")
     is_ready = bool(teaching.motion and teaching.take)
@@ -49,18 +49,28 @@ def draw_teaching(layout: UILayout, context: Context) -> None:
     _outcome(box, context, bpy.path.abspath(settings.database))
 
 
+def _column(box: UILayout) -> UILayout:
+    column = box.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    return column
+
+
 def _outcome(box: UILayout, context: Context, database: str) -> None:
     """How well the last motion and its take matched, if the database in use has them."""
     taught = last_taught[0] if last_taught else None
     if taught is None or taught.path != database:
         return
+    quality = tr(taught.quality)
+    if text.is_wide(context):
+        quality += f" ({taught.correlation:.2f})"
     text.facts(
         box,
         context,
         [
             ("Taught", taught.name),
-            ("Agreement", f"{tr(taught.quality)} ({taught.correlation:.2f})"),
-            ("Begins at", f"{taught.begin_s:.2f} s"),
+            ("Agreement", quality),
+            ("Begins at", f"{round(taught.begin_s, 2) + 0.0:.2f} s"),
         ],
     )
     for note in taught.notes:

@@ -96,7 +96,7 @@ TimeLag align_in_time(std::span<const double> first_times_s, std::span<const dou
   const auto largest_lag = static_cast<Eigen::Index>(settings.largest_lag_s * kGrid_hz);
   if (window < 3 || largest_lag < 1 || count < window + 2 * largest_lag + 1)
     throw std::invalid_argument(
-        "align_in_time: the recordings overlap by too little; record the event well inside both");
+        "the recordings overlap by too little; record the event well inside both");
   const Eigen::VectorXd a = on_grid(first_times_s, first, begin_s, count);
   const Eigen::VectorXd b = on_grid(second_times_s, second, begin_s, count);
   const Eigen::Index at = common_event(a, b, window, largest_lag);

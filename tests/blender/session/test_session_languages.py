@@ -39,7 +39,10 @@ SHOWN = [*sorted((ADDON / "ui").glob("*.py")), ADDON / "scene/prompt.py"]
 SHOWN += [ADDON / f"scene/{name}.py" for name in ("latent_view", "pose_guide", "sensor_graph")]
 SHOWN += [ADDON / "ops/sensor_table.py"]
 DEFINED = [*sorted((ADDON / "ops").glob("*.py")), ADDON / "scene/settings.py"]
-DEFINED += [ADDON / f"scene/{name}.py" for name in ("preferences", "clips", "mapping", "training")]
+DEFINED += [
+    ADDON / f"scene/{name}.py"
+    for name in ("preferences", "clips", "mapping", "training", "teaching")
+]
 
 NOT_TEXT = re.compile(r"[A-Z0-9_]+|SPARSEMOCAP\w+|sparse_mocap.*|[a-z_]+(\.[a-z_]+)+|.{0,2}")
 IGNORED = {
