@@ -4,7 +4,7 @@
 LABELS = {
     # Panels
     "Sparse Mocap": "Sparse Mocap",
-    "1  Motion Database": "1  Bewegungsdatenbank",
+    "1  Motion Database": "1  Datenbank",
     "Clips": "Clips",
     "2  Take": "2  Aufnahme",
     "3  Reconstruct": "3  Rekonstruieren",

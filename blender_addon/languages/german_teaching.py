@@ -7,7 +7,7 @@ TEACHING = {
     "Motion": "Bewegung",
     "Choose Motion": "Bewegung wählen",
     "Choose Take": "Aufnahme wählen",
-    "Align by a clap": "An einem Klatschen ausrichten",
+    "Align by a clap": "Klatschen als Marke",
     "Taught": "Angelernt",
     "Begins at": "Beginnt bei",
     "very good": "sehr gut",
@@ -45,7 +45,7 @@ TEACHING = {
         "Eine neue Bewegungsdatenbank schreiben, die auch diese Bewegung enthält und was die "
         "Sensoren dabei gemessen haben, und sie benutzen. Die bisherige bleibt, wie sie ist"
     ),
-    "Agreement": "Übereinstimmung",
+    "Agreement": "Passt",
     'Taught "{name}": the agreement of motion and take is {agreement}': (
         "„{name}“ angelernt; Übereinstimmung von Bewegung und Aufnahme: {agreement}"
     ),
