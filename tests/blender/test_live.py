@@ -232,7 +232,7 @@ def test_disconnecting_leaves_a_capture_that_others_need(tmp_path):
         until(lambda: not session.is_running)
         other.skip()
         until(lambda: len(other.read()) > 0)
-        assert other.leave()
+        other.leave()  # it ends a little later if the list of ports is just looking at it
         until(lambda: not is_alive(capture.pid))
 
 
