@@ -101,6 +101,19 @@ class Reconstruction:
     def notes(self) -> list[str]:
         """What the method says of the take, a line each."""
     @property
+    def alternatives(self) -> list[Reconstruction]:
+        """What else the take may have been, the likeliest first, each a whole result.
+
+        In best quality, where the method has an option of that name and it is set.
+        """
+    @property
+    def differences(self) -> list[tuple[float, float, float]]:
+        """Where an alternative differs from the result that has it.
+
+        (begin, end, distance): s from the take's beginning, and how far the joints are apart, m,
+        mean over the joints and the part, heading frame. Empty for the first result.
+        """
+    @property
     def contacts(self) -> Floats:
         """(T, 2) probability that the left and the right foot are on the ground."""
     @property

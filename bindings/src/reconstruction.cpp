@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string>
+#include <tuple>
 
 #include "common.hpp"
 #include "methods.hpp"
@@ -101,6 +102,13 @@ py::array_t<double> contacts_of(const Reconstruction& solved) {
   return out;
 }
 
+std::vector<std::tuple<double, double, double>> differences_of(const Reconstruction& solved) {
+  std::vector<std::tuple<double, double, double>> out;
+  for (const auto& part : solved.differences)
+    out.emplace_back(part.begin_s, part.end_s, part.distance_m);
+  return out;
+}
+
 void bind_recording(py::module_& m) {
   py::class_<SensorRecording>(m, "SensorRecording", "T samples of one sensor.")
       .def(py::init(&recording_from), py::arg("times_s"), py::arg("specific_force") = py::none(),
@@ -150,6 +158,16 @@ void bind_result(py::module_& m) {
                     "How long after its reading a live pose is ready, in s; None for best quality.")
       .def_readonly("notes", &Reconstruction::notes,
                     "What the method says of the take, a line each.")
+      .def_readonly(
+          "alternatives", &Reconstruction::alternatives,
+          R"doc(What else the take may have been, the likeliest first, each a whole result.
+
+In best quality, where the method has an option of that name and it is set.)doc")
+      .def_property_readonly("differences", &differences_of,
+                             R"doc(Where an alternative differs from the result that has it.
+
+(begin, end, distance): s from the take's beginning, and how far the joints are apart, m, mean over
+the joints and the part, heading frame. Empty for the first result.)doc")
       .def_property_readonly(
           "contacts", &contacts_of,
           "(T, 2) probability that the left and the right foot are on the ground.")

@@ -69,6 +69,11 @@ __all__ = ["body_of", "model_of", "reconstruct", "require_given"]
 @frame_option
 @extremities_option
 @click.option(
+    "--alternatives", type=click.IntRange(0, 2), metavar="N",
+    help="In best quality, also write up to N (1 or 2) other motions that fit the sensors about as "
+    "well, as OUT_b and OUT_c beside the output.",
+)
+@click.option(
     "--json", "json_path", type=OutputPath(), help="Also write a report on every frame as JSON."
 )
 @position_along_bone_option
@@ -91,6 +96,7 @@ def reconstruct(
     positions: Path | None,
     frame: str,
     extremities: bool,
+    alternatives: int | None,
     json_path: Path | None,
     positions_along_bone: tuple[tuple[str, float], ...],
     calibration_path: Path | None,
@@ -101,6 +107,10 @@ def reconstruct(
     The motion has the motion database's skeleton and frame rate, or the method's if none is used.
     """
     check_ending(output, ".bvh")
+    if alternatives is not None:
+        if alternatives > 0 and not offline:
+            raise click.UsageError("--alternatives needs --offline: only best quality has them.")
+        settings = (*settings, ("alternatives", str(alternatives)))
     choice = method_choice(method, preset, settings)
     require_given(choice, database_path, model_path, body_path)
     recorded = _read(take, clap)
@@ -127,6 +137,9 @@ def reconstruct(
         write_json(json_path, _report(take, database, choice, offline, solved))
     warn([*_left_out(recorded, calibration), *unit_warnings(recorded)])
     _print_summary(output, solved, database)
+    _write_alternatives(output, solved, positions, frame, extremities)
+    if alternatives and not solved.alternatives:
+        click.echo("No other motion fits the sensors about as well.")
 
 
 def _read(path: Path, clap: tuple[float, float] | None) -> Take:
@@ -188,6 +201,27 @@ def _write_positions(
     count = num_written(names, extremities)
     positions = motion.joint_positions(frame)[:, :count]
     write_positions(path, solved.readings.times_s, names[:count], positions)
+
+
+def _write_alternatives(
+    output: Path, solved: Reconstruction, positions: Path | None, frame: str, extremities: bool
+) -> None:
+    """Writes each alternative beside the output and says where it differs."""
+    for letter, other in zip("bc", solved.alternatives, strict=False):
+        path = beside(output, letter)
+        write_bvh(path, other.motion)
+        if positions is not None:
+            _write_positions(beside(positions, letter), other, frame, extremities)
+        parts = ", ".join(
+            f"{begin:.1f} to {end:.1f} s ({100.0 * distance:.0f} cm)"
+            for begin, end, distance in other.differences
+        )
+        click.echo(f"{path}: differs from {parts}")
+
+
+def beside(path: Path, letter: str) -> Path:
+    """Returns the file of an alternative: ``take_b.bvh`` for ``take.bvh``."""
+    return path.with_stem(f"{path.stem}_{letter}")
 
 
 def _report(

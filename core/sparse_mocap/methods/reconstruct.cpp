@@ -46,6 +46,18 @@ Reconstruction begun(const Method& method, const ExtremityTrack& extremities,
   return out;
 }
 
+void add_alternatives(const WholeTakeMethod& method, const ExtremityTrack& extremities,
+                      Reconstruction& solved) {
+  std::vector<Reconstruction> found;
+  for (auto& alternative : method.alternatives()) {
+    Reconstruction& other = found.emplace_back(solved);
+    other.estimates = std::move(alternative.estimates);
+    extremities.complete(other.estimates);
+    other.differences = std::move(alternative.differences);
+  }
+  solved.alternatives = std::move(found);
+}
+
 }  // namespace
 
 std::vector<SensorInput> used_channels(std::vector<SensorInput> sensors, const MethodInfo& method) {
@@ -70,6 +82,7 @@ Reconstruction reconstruct(std::span<const SensorRecording> take, std::vector<Se
     out.estimates = method->solve(out.readings, progress);
     extremities.complete(out.estimates);
     out.notes = method->notes();
+    add_alternatives(*method, extremities, out);
     return out;
   }
   const auto method = make_live_method(entry, request.settings, context);

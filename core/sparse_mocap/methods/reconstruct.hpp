@@ -39,6 +39,10 @@ struct Reconstruction {
   std::vector<Reading> readings;
   std::vector<PoseEstimate> estimates;  // one a reading
   std::vector<std::string> notes;       // what the method says of the take, a line each
+  // Best quality, where the method's options ask for it: what else the take may have been, the
+  // likeliest first, each a whole reconstruction.
+  std::vector<Reconstruction> alternatives;
+  std::vector<Difference> differences;  // of an alternative, from the reconstruction that has it
 
   Motion motion() const { return to_motion(estimates, skeleton, rate_hz); }
 };

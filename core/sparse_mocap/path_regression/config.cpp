@@ -141,6 +141,9 @@ const OptionTable<Config>& options() {
               "lag_s", &Config::lag_s, Config::kLeastLag_s, Config::kMostLag_s,
               "live: how long a pose waits for readings after its own, s; one that waits is more "
               "accurate")
+          .integer("alternatives", &Config::alternatives, 0, Config::kMostAlternatives,
+                   "best quality: how many other motions to look for that fit the readings about "
+                   "as well")
           .integer("max_iterations", &Config::max_iterations, 1, 10'000,
                    "steps of the fit, at most");
   return table;

@@ -39,6 +39,10 @@ struct Config {
   double wide_spread_m = 0.15;  // poses that differ so much count half
   int max_iterations = 10;
 
+  // Whole takes: how many other motions to look for that the readings leave possible.
+  int alternatives = 0;
+  static constexpr int kMostAlternatives = 2;
+
   // Live: how long a pose waits for readings after its own, s. Retrieval looks the least lag ahead;
   // for the rest of it the pose is held back.
   double lag_s = kLeastLag_s;

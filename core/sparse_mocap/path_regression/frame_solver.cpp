@@ -107,6 +107,13 @@ void FrameSolver::retrieve(const std::vector<Path>& paths, const SignalWindow& w
       agreement(frame.diagnostics.find("spread_m")->second, config_.wide_spread_m);
 }
 
+Eigen::MatrixXf FrameSolver::positions(const std::vector<Path>& paths) const {
+  Eigen::MatrixXf out(database_->positions().cols(), static_cast<Eigen::Index>(paths.size()));
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    out.col(static_cast<Eigen::Index>(i)) = database_->positions().row(paths[i].frame).transpose();
+  return out;
+}
+
 // The weights by which the regression from signals to poses predicts.
 void FrameSolver::put_regressed(const WeightedPaths& weighted, const SignalWindow& window,
                                 Eigen::VectorXd& weights) const {

@@ -42,6 +42,8 @@ class FrameSolver {
   // memory of an earlier frame.
   void retrieve(const std::vector<retrieval::Path>& paths, const retrieval::SignalWindow& window,
                 const Reading& reading, RetrievedFrame& frame) const;
+  // The poses that paths lead to: one column a path, 3 a joint, m, heading frame.
+  Eigen::MatrixXf positions(const std::vector<retrieval::Path>& paths) const;
 
  private:
   void put_regressed(const retrieval::WeightedPaths& weighted,

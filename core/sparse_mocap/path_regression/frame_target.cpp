@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "sparse_mocap/motion/standard_skeleton.hpp"
 #include "sparse_mocap/sensors/sites.hpp"
@@ -19,6 +20,30 @@ bool is_on_limb(const Site& site) {
 double doubt(double agreement) { return 1.0 / std::max(agreement, 1e-6) - 1.0; }
 
 }  // namespace
+
+FrameTarget blended(const FrameTarget& a, const FrameTarget& b, double share,
+                    double wide_spread_m) {
+  const auto between = [share](const auto& from, const auto& to) {
+    return std::decay_t<decltype(from)>(from + share * (to - from));
+  };
+  FrameTarget out = a;
+  out.points = between(a.points, b.points);
+  const Eigen::Index ends = a.points.size() / 4;
+  const double mean_square =
+      3.0 * (b.points - a.points).head(ends).squaredNorm() / static_cast<double>(ends);
+  out.agreement = 1.0 / (1.0 + between(doubt(a.agreement), doubt(b.agreement)) +
+                         share * (1.0 - share) * mean_square / (wide_spread_m * wide_spread_m));
+  if (a.step.size() == b.step.size()) out.step = between(a.step, b.step);
+  out.root.velocity_mps = between(a.root.velocity_mps, b.root.velocity_mps);
+  out.root.yaw_rate_radps = between(a.root.yaw_rate_radps, b.root.yaw_rate_radps);
+  out.root.height_m = between(a.root.height_m, b.root.height_m);
+  out.root.contacts = between(a.root.contacts, b.root.contacts);
+  out.feet.certainty = between(a.feet.certainty, b.feet.certainty);
+  out.feet.height_m = between(a.feet.height_m, b.feet.height_m);
+  for (std::size_t side : {0U, 1U})
+    out.feet.step_m[side] = between(a.feet.step_m[side], b.feet.step_m[side]);
+  return out;
+}
 
 void even_agreements(std::span<FrameTarget> targets, std::size_t reach) {
   std::vector<double> doubts;

@@ -56,6 +56,10 @@ struct FrameTarget {
   retrieval::StandingFeet feet;
 };
 
+// Between two targets of one frame and reading: a where share is 0, b where it is 1. In between
+// poses that are apart agree less; wide_spread_m is how far apart those are that count half.
+FrameTarget blended(const FrameTarget& a, const FrameTarget& b, double share, double wide_spread_m);
+
 // Poses that agree in one frame alone, between frames in which they do not, do so by chance, and
 // would pull that frame out of its neighbours. The doubt (1 / agreement - 1) of each frame becomes
 // the mean over the frames within `reach` of it.

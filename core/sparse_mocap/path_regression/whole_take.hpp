@@ -6,11 +6,16 @@
 
 #include "sparse_mocap/path_regression/frame_solver.hpp"
 #include "sparse_mocap/path_regression/oriented_limbs.hpp"
+#include "sparse_mocap/path_regression/pose_modes.hpp"
 
 namespace sparse_mocap::path_regression {
 
 // Best quality: paths that know what comes after a frame too, and a smooth take. Uses all
 // processors, or as many threads as the context says; the result does not depend on them.
+//
+// Alternatives are asked for by the option of that name. Where retrieved poses that are unlike the
+// take's own weigh enough for long enough, such a part is retrieved from them alone and fitted anew
+// together with what is around it. Elsewhere an alternative has the take's own poses.
 class WholeTakeReconstructor : public WholeTakeMethod {
  public:
   // Throws ConfigError.
@@ -22,11 +27,33 @@ class WholeTakeReconstructor : public WholeTakeMethod {
 
   std::vector<PoseEstimate> solve(const std::vector<Reading>& take,
                                   const Progress& progress) override;
+  std::vector<Alternative> alternatives() const override { return alternatives_; }
 
  private:
-  std::vector<PoseEstimate> fitted(const std::vector<Reading>& take,
-                                   std::vector<RetrievedFrame> retrieved,
-                                   const Progress& progress) const;
+  struct SearchedTake;
+  struct RetrievedTake;
+  struct Part;
+  struct FittedPart;
+  using Known = std::vector<std::vector<Eigen::VectorXf>>;  // poses of each frame, see modes_of
+
+  SearchedTake searched(const std::vector<Reading>& measured, const Progress& progress);
+  RetrievedTake retrieved(const SearchedTake& take, const Progress& progress) const;
+  void fit(std::vector<FittedFrame>& frames, const RetrievedTake& retrieved,
+           const Progress& progress) const;
+  std::vector<PoseEstimate> estimates(const SearchedTake& take, RetrievedTake retrieved,
+                                      const std::vector<FittedFrame>& frames) const;
+
+  void find_alternatives(const SearchedTake& take, const RetrievedTake& first,
+                         const std::vector<FittedFrame>& frames, const Progress& progress);
+  std::vector<Part> parts_elsewhere(const SearchedTake& take, const Known& known,
+                                    const Progress& progress) const;
+  RetrievedTake retrieved_part(const SearchedTake& take, const Known& known,
+                               const Part& part) const;
+  FittedPart fitted_part(const Part& part, const RetrievedTake& retrieved,
+                         const RetrievedTake& first, const std::vector<FittedFrame>& frames,
+                         const Progress& progress) const;
+  double distance_m(const Part& part, const FittedPart& fitted, const Known& known) const;
+  Eigen::VectorXf positions_of(const FittedFrame& frame) const;
 
   template <typename Result, typename Reached, typename Of>
   std::vector<Result> in_parallel(std::size_t count, const Reached& reached, const Of& of) const;
@@ -34,6 +61,7 @@ class WholeTakeReconstructor : public WholeTakeMethod {
   FrameSolver solver_;
   TurningOf turning_;
   int num_threads_;
+  std::vector<Alternative> alternatives_;
 };
 
 }  // namespace sparse_mocap::path_regression

@@ -91,12 +91,21 @@ class BoundedWholeTake : public WholeTakeMethod {
   std::vector<PoseEstimate> solve(const std::vector<Reading>& take,
                                   const Progress& progress) override {
     auto estimates = method_->solve(take, progress);
-    HumanLimits limits(skeleton(), rate_hz());
-    for (auto& estimate : estimates) limits.apply(estimate);
+    limit(estimates);
     return estimates;
+  }
+  std::vector<Alternative> alternatives() const override {
+    auto alternatives = method_->alternatives();
+    for (auto& alternative : alternatives) limit(alternative.estimates);
+    return alternatives;
   }
 
  private:
+  void limit(std::vector<PoseEstimate>& estimates) const {
+    HumanLimits limits(skeleton(), rate_hz());
+    for (auto& estimate : estimates) limits.apply(estimate);
+  }
+
   std::unique_ptr<WholeTakeMethod> method_;
 };
 

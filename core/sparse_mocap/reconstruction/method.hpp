@@ -43,12 +43,27 @@ class LiveMethod : public Method {
   virtual double history_s() const = 0;  // how far back the readings of a pose reach
 };
 
+// A part of a take, and how far two motions of it are apart there.
+struct Difference {
+  double begin_s = 0.0, end_s = 0.0;  // from the first reading on
+  double distance_m = 0.0;            // of the joints, mean over the part; heading frame
+};
+
+// Another motion that fits the readings of a take about as well.
+struct Alternative {
+  std::vector<PoseEstimate> estimates;  // one a reading
+  std::vector<Difference> differences;  // from the motion that solve() gave, in order; not empty
+};
+
 // Answers when the whole performance is known; every pose may depend on all of it.
 class WholeTakeMethod : public Method {
  public:
   // One pose a reading. Throws ConfigError and Cancelled.
   virtual std::vector<PoseEstimate> solve(const std::vector<Reading>& take,
                                           const Progress& progress) = 0;
+  // What else the take of the last solve() may have been, the likeliest first; none unless the
+  // method's options ask for it.
+  virtual std::vector<Alternative> alternatives() const { return {}; }
 };
 
 // Throws ConfigError for a reading of another number of sensors.

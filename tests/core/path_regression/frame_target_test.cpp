@@ -95,6 +95,34 @@ TEST(InclinationTarget, LeavesSilentSensorsOut) {
   EXPECT_TRUE(inclination_target(kSkeleton, Reading(1), signals).joints.empty());
 }
 
+TEST(BlendedTarget, LeadsFromOneToTheOther) {
+  Random random(7);
+  FrameTarget a, b;
+  a.points = random.column(12 * kNumStandardJoints, 1.0);
+  b.points = a.points;
+  b.points.head(3 * kNumStandardJoints).array() += 0.1;
+  a.step = 0.1 * a.points;
+  b.step = 0.3 * b.points;
+  b.root.height_m = 1.0;
+  b.root.velocity_mps = {0.4, 0.2};
+  b.feet.certainty = {1.0, 0.5};
+  b.feet.step_m[1] = {0.0, 0.0, 0.02};
+  a.agreement = b.agreement = 0.5;
+  for (const double share : {0.0, 0.25, 1.0}) {
+    const FrameTarget between = blended(a, b, share, 0.2);
+    EXPECT_LT((between.points - a.points).norm(), share * (b.points - a.points).norm() + 1e-9);
+    EXPECT_LT(((1.0 - share) * a.points + share * b.points - between.points).norm(), 1e-12);
+    EXPECT_LT(((1.0 - share) * a.step + share * b.step - between.step).norm(), 1e-12);
+    EXPECT_NEAR(between.root.height_m, share, 1e-12);
+    EXPECT_NEAR(between.root.velocity_mps.x(), 0.4 * share, 1e-12);
+    EXPECT_NEAR(between.feet.certainty[1], 0.5 * share, 1e-12);
+    EXPECT_NEAR(between.feet.step_m[1].z(), 0.02 * share, 1e-12);
+    // Halves that are 0.1 m apart along each axis spread by share (1 - share) 0.03 m^2.
+    const double doubt = 1.0 + share * (1.0 - share) * 0.03 / 0.04;
+    EXPECT_NEAR(between.agreement, 1.0 / (1.0 + doubt), 1e-9);
+  }
+}
+
 TEST(Agreement, OfOneFrameAloneCountsLittle) {
   std::vector<FrameTarget> targets(9);
   for (auto& target : targets) target.agreement = 0.2;
