@@ -69,7 +69,9 @@ __all__ = ["body_of", "model_of", "reconstruct", "require_given"]
 @frame_option
 @extremities_option
 @click.option(
-    "--alternatives", type=click.IntRange(0, 2), metavar="N",
+    "--alternatives",
+    type=click.IntRange(0, 2),
+    metavar="N",
     help="In best quality, also write up to N (1 or 2) other motions that fit the sensors about as "
     "well, as OUT_b and OUT_c beside the output.",
 )
@@ -107,11 +109,7 @@ def reconstruct(
     The motion has the motion database's skeleton and frame rate, or the method's if none is used.
     """
     check_ending(output, ".bvh")
-    if alternatives is not None:
-        if alternatives > 0 and not offline:
-            raise click.UsageError("--alternatives needs --offline: only best quality has them.")
-        settings = (*settings, ("alternatives", str(alternatives)))
-    choice = method_choice(method, preset, settings)
+    choice = _choice(method, preset, settings, alternatives, offline)
     require_given(choice, database_path, model_path, body_path)
     recorded = _read(take, clap)
     calibration = _calibration(calibration_path, recorded, positions_along_bone)
@@ -131,15 +129,26 @@ def reconstruct(
             body=body_of(body_path),
             progress=progress,
         )
-    write_bvh(output, solved.motion)
-    _write_positions(positions, solved, frame, extremities)
-    if json_path is not None:
-        write_json(json_path, _report(take, database, choice, offline, solved))
+    _write(output, positions, solved, frame, extremities)
+    _write_report(json_path, take, database, choice, offline, solved)
     warn([*_left_out(recorded, calibration), *unit_warnings(recorded)])
     _print_summary(output, solved, database)
-    _write_alternatives(output, solved, positions, frame, extremities)
-    if alternatives and not solved.alternatives:
-        click.echo("No other motion fits the sensors about as well.")
+    _write_alternatives(alternatives, output, positions, solved, frame, extremities)
+
+
+def _choice(
+    method: str | None,
+    preset: str | None,
+    settings: tuple[tuple[str, str], ...],
+    alternatives: int | None,
+    offline: bool,
+) -> MethodChoice:
+    """Returns the chosen method. Raises UsageError for alternatives without best quality."""
+    if alternatives is None:
+        return method_choice(method, preset, settings)
+    if alternatives > 0 and not offline:
+        raise click.UsageError("--alternatives needs --offline: only best quality has them.")
+    return method_choice(method, preset, (*settings, ("alternatives", str(alternatives))))
 
 
 def _read(path: Path, clap: tuple[float, float] | None) -> Take:
@@ -191,37 +200,49 @@ def model_of(choice: MethodChoice, path: Path | None, database: MotionDatabase |
     return None
 
 
-def _write_positions(
-    path: Path | None, solved: Reconstruction, frame: str, extremities: bool
+def _write(
+    output: Path, table: Path | None, solved: Reconstruction, frame: str, extremities: bool
 ) -> None:
-    if path is None:
-        return
+    """Writes the motion, and its positions if there is a table for them."""
     motion = solved.motion
+    write_bvh(output, motion)
+    if table is None:
+        return
     names = motion.skeleton.names
     count = num_written(names, extremities)
     positions = motion.joint_positions(frame)[:, :count]
-    write_positions(path, solved.readings.times_s, names[:count], positions)
+    write_positions(table, solved.readings.times_s, names[:count], positions)
 
 
 def _write_alternatives(
-    output: Path, solved: Reconstruction, positions: Path | None, frame: str, extremities: bool
+    wanted: int | None,
+    output: Path,
+    table: Path | None,
+    solved: Reconstruction,
+    frame: str,
+    extremities: bool,
 ) -> None:
     """Writes each alternative beside the output and says where it differs."""
     for letter, other in zip("bc", solved.alternatives, strict=False):
         path = beside(output, letter)
-        write_bvh(path, other.motion)
-        if positions is not None:
-            _write_positions(beside(positions, letter), other, frame, extremities)
+        _write(path, table and beside(table, letter), other, frame, extremities)
         parts = ", ".join(
             f"{begin:.1f} to {end:.1f} s ({100.0 * distance:.0f} cm)"
             for begin, end, distance in other.differences
         )
         click.echo(f"{path}: differs from {parts}")
+    if wanted and not solved.alternatives:
+        click.echo("No other motion fits the sensors about as well.")
 
 
 def beside(path: Path, letter: str) -> Path:
     """Returns the file of an alternative: ``take_b.bvh`` for ``take.bvh``."""
     return path.with_stem(f"{path.stem}_{letter}")
+
+
+def _write_report(path: Path | None, *about: Any) -> None:
+    if path is not None:
+        write_json(path, _report(*about))
 
 
 def _report(
