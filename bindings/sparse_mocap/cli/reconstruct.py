@@ -224,8 +224,8 @@ def _write_alternatives(
 ) -> None:
     """Writes each alternative beside the output and says where it differs."""
     for letter, other in zip("bc", solved.alternatives, strict=False):
-        path = beside(output, letter)
-        _write(path, table and beside(table, letter), other, frame, extremities)
+        path = _beside(output, letter)
+        _write(path, table and _beside(table, letter), other, frame, extremities)
         parts = ", ".join(
             f"{begin:.1f} to {end:.1f} s ({100.0 * distance:.0f} cm)"
             for begin, end, distance in other.differences
@@ -235,7 +235,7 @@ def _write_alternatives(
         click.echo("No other motion fits the sensors about as well.")
 
 
-def beside(path: Path, letter: str) -> Path:
+def _beside(path: Path, letter: str) -> Path:
     """Returns the file of an alternative: ``take_b.bvh`` for ``take.bvh``."""
     return path.with_stem(f"{path.stem}_{letter}")
 
