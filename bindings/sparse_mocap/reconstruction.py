@@ -61,8 +61,9 @@ def reconstruct(
     calibration says how the take's sensors are worn, without one they sit as their names say, at
     the ends of their bones; positions_along_bone (by site, 0 to 1) win over it. model and body are
     for methods that need one; a body wins over the calibration's. Clips in excluded_clips
-    (indices) are treated as if the database did not have them. tracker_* say where
-    the world of orientations and positions stands: yaw about the vertical (rad) and origin (m).
+    (indices) are treated as if the database did not have them. Without use_gyroscopes sensors are
+    used as accelerometers alone, but for trackers with a position. tracker_* say where the world of
+    orientations and positions stands: yaw about the vertical (rad) and origin (m).
     progress(done, total, what) cancels by returning False.
 
     Raises ConfigError in one line for what does not fit together, CalibrationError for a sensor
@@ -254,6 +255,10 @@ def sensor_recordings(take: Take) -> list[_core.SensorRecording]:
 
 
 def _used(channels: Sequence[str], use_gyroscopes: bool) -> list[str]:
+    """Without gyroscopes there is no orientation either, but for trackers with a position."""
     if use_gyroscopes:
         return list(channels)
-    return [name for name in channels if name not in ("angular_velocity", "gravity_direction")]
+    theirs = {"angular_velocity", "gravity_direction"}
+    if "specific_force" in channels and "position" not in channels:
+        theirs.add("orientation")
+    return [name for name in channels if name not in theirs]

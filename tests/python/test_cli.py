@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -212,7 +213,7 @@ def test_reconstruct_writes_motion_positions_and_report(
     assert motion.num_frames == len(times) == len(positions) == len(told["frames"])
     assert joints == MotionDatabase(database_path).skeleton.names
     on_standard, _ = standard_motion(motion, MotionDatabase(database_path).skeleton)
-    np.testing.assert_allclose(on_standard.joint_positions("heading"), positions, atol=2e-4)
+    np.testing.assert_allclose(on_standard.joint_positions("heading"), positions, atol=3e-4)
     assert told["sites"] == ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
     assert (told["format"], told["format_version"]) == ("sparse_mocap_report", 1)
     assert told["options"]["method"] == "path_regression"
@@ -227,7 +228,7 @@ def test_reconstruct_starts_when_the_take_does(
 ) -> None:
     take = read_take(take_path)
     late = {
-        site: SensorRecord(record.times_s + 12.345, record.specific_force, record.angular_velocity)
+        site: replace(record, times_s=record.times_s + 12.345)
         for site, record in take.sensors.items()
     }
     write_take(tmp_path / "late.csv", Take(late))

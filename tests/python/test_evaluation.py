@@ -6,12 +6,13 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import Result
-from sparse_mocap import MotionDatabase
+from sparse_mocap import MotionDatabase, Take, read_take, write_take
 from sparse_mocap.evaluation import (
     BASELINES,
     ClipResult,
@@ -243,10 +244,22 @@ def test_hidden_is_as_good_as_absent(
     name = "bruno_walk_01.bvh"
     settings = Settings(1, tuple(contenders((method,))), tests=name, with_gyroscopes=gyroscopes)
     (test,) = evaluate(database, library, settings).tests
-    path = {what: tmp_path / what for what in ("db.smdb", "take.csv", "o.bvh", "o.csv", "t.csv")}
+    path = {
+        what: tmp_path / what
+        for what in ("db.smdb", "everything.csv", "take.csv", "o.bvh", "o.csv", "t.csv")
+    }
     for words in (
         ("database", "build", library, "-o", path["db.smdb"], "--mirror", "--exclude", name),
-        ("simulate", library / name, "-o", path["take.csv"]),
+        ("simulate", library / name, "-o", path["everything.csv"]),
+    ):
+        result = cli(*words)
+        assert result.exit_code == 0, result.output
+    simulated = read_take(path["everything.csv"]).sensors
+    write_take(
+        path["take.csv"],
+        Take({site: replace(record, orientation=None) for site, record in simulated.items()}),
+    )
+    for words in (
         ("reconstruct", "--database", path["db.smdb"], path["take.csv"], "-o", path["o.bvh"],
          "--method", method, "--gyroscopes" if gyroscopes else "--no-gyroscopes",
          "--positions", path["o.csv"]),

@@ -181,7 +181,8 @@ def test_gyroscopes_that_are_absent_or_never_turn_change_nothing(
     take: Take, database: MotionDatabase
 ) -> None:
     plain = reconstruct(take, database, use_gyroscopes=False)
-    assert plain.readings.channels == [["specific_force", "orientation"]] * len(take.sensors)
+    assert plain.readings.channels == [["specific_force"]] * len(take.sensors)
+    take = Take({site: replace(r, orientation=None) for site, r in take.sensors.items()})
     zeros = {
         site: replace(r, angular_velocity=np.zeros_like(r.specific_force))
         for site, r in take.sensors.items()

@@ -218,7 +218,7 @@ offline_option: Decorator = click.option(
 
 gyroscopes_option: Decorator = click.option(
     "--gyroscopes/--no-gyroscopes", default=True, show_default=True,
-    help="Also use the gravity direction, for sensors with gyroscopes (gx,gy,gz).",
+    help="Also use how sensors are turned, of those with gyroscopes (gx,gy,gz) or orientations.",
 )  # fmt: skip
 
 calibration_option: Decorator = click.option(

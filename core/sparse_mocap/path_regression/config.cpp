@@ -97,6 +97,12 @@ const OptionTable<Config>& options() {
           .number("real_preference", &Config::real_preference, -10.0, 0.99,
                   "how much nearer frames count whose readings real sensors measured; below 0: "
                   "farther")
+          .flag(
+              "use_own_headings", &Config::use_own_headings,
+              "whether the turns of sensors with a gyroscope are followed, so that they say where "
+              "limbs point")
+          .number("heading_memory_s", &Config::heading_memory_s, 1.0, 1e4,
+                  "how long poses count by which the headings of such sensors are found, s")
           .flag("use_tempo_copies", &Config::use_tempo_copies,
                 "whether copies of the clips at other tempos are searched")
           .number("penalty", &Config::penalty, 0.0, 100.0,

@@ -19,6 +19,10 @@ struct Config {
   double orientation_weight_mps2 = 12.0;  // and what a unit of a sensor's axes counts
   // How much nearer frames count whose readings real sensors measured.
   double real_preference = 0.0;
+  // Whether sensors with a gyroscope are used as orientations too, whose headings are found as the
+  // take goes, by poses of the last heading_memory_s.
+  bool use_own_headings = true;
+  double heading_memory_s = 20.0;
   bool use_tempo_copies = true;  // search clips at other tempos than performed as well
   double penalty = 0.8;          // of an unmatched reading, in distances of its farthest neighbour
   double forgetting = 0.9;       // how much a reading counts one reading later

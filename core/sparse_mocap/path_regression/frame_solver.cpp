@@ -9,6 +9,7 @@
 #include "sparse_mocap/path_regression/oriented_limbs.hpp"
 #include "sparse_mocap/path_regression/recent_points.hpp"
 #include "sparse_mocap/path_regression/regression.hpp"
+#include "sparse_mocap/path_regression/sensor_turning.hpp"
 #include "sparse_mocap/retrieval/diagnostics.hpp"
 #include "sparse_mocap/retrieval/extremity_vote.hpp"
 #include "sparse_mocap/retrieval/real_readings.hpp"
@@ -40,6 +41,16 @@ double agreement(const Eigen::VectorXd& spread_m, double wide_spread_m) {
   return 1.0 / (1.0 + mean_square / (wide_spread_m * wide_spread_m));
 }
 
+HeadingSettings heading_settings(const std::vector<Sensor>& sensors, const Config& config,
+                                 double rate_hz) {
+  HeadingSettings settings;
+  for (const Sensor& sensor : sensors)
+    settings.is_own.push_back(has_own_heading(sensor, config.use_own_headings));
+  settings.rate_hz = rate_hz;
+  settings.memory_s = config.heading_memory_s;
+  return settings;
+}
+
 std::uint64_t next_number() {
   static std::atomic<std::uint64_t> last = 0;
   return ++last;
@@ -50,7 +61,7 @@ std::uint64_t next_number() {
 FrameSolver::FrameSolver(const Config& config, const MethodContext& context)
     : number_(next_number()),
       database_(context.database),
-      signals_(all_signals(with_turning(context.sensors))),
+      signals_(all_signals(with_turning(context.sensors, config.use_own_headings))),
       num_sensors_(static_cast<Eigen::Index>(context.sensors.size())),
       column_weights_(column_weights(signals_, config)),
       features_(config.features, database_->rate_hz()),
@@ -60,6 +71,7 @@ FrameSolver::FrameSolver(const Config& config, const MethodContext& context)
              searched_frames(*database_, config.use_tempo_copies, context.excluded_clips)),
       distance_factors_(distance_factors(*database_, signals_, config.real_preference)),
       config_(config),
+      headings_(heading_settings(context.sensors, config, database_->rate_hz())),
       standing_heights_(*database_) {
   const int most_neighbours = static_cast<int>(Config::kNeighbourShare * index_.num_rows());
   config_.num_neighbours = std::min(config_.num_neighbours, std::max(most_neighbours, 1));
@@ -78,6 +90,16 @@ int FrameSolver::reach_back() const {
                                         : search;
 }
 
+bool FrameSolver::has_headings() const {
+  return std::any_of(signals_.begin(), signals_.end(),
+                     [](const Signal& signal) { return signal.channel == Channel::orientation; });
+}
+
+bool FrameSolver::has_own_headings() const {
+  return std::find(headings_.is_own.begin(), headings_.is_own.end(), true) !=
+         headings_.is_own.end();
+}
+
 void FrameSolver::search(const SignalWindow& window, std::vector<Neighbour>& out) const {
   static thread_local std::vector<float> feature;
   feature.resize(static_cast<std::size_t>(index_.num_dimensions()));
@@ -90,11 +112,8 @@ void FrameSolver::retrieve(const std::vector<Path>& paths, const SignalWindow& w
                            const Reading& reading, RetrievedFrame& frame) const {
   static thread_local WeightedPaths weighted;
   static thread_local Eigen::VectorXd weights;
-  put_best_paths(paths, config_.num_paths, weighted.paths);
-  put_softmax_weights(weighted.paths, config_.sharpness, weighted.weights);
-  weights = weighted.weights;
-  if (config_.regression_ridge > 0.0) put_regressed(weighted, window, weights);
-  put_points(weighted.paths, weights, window, frame.target);
+  put_weights(paths, window, weighted, weights);
+  put_points(weighted.paths, weights, window, frame);
   put_inclination_target(database_->skeleton(), reading, signals_, frame.target.inclination);
   put_turning_targets(reading, signals_, frame.target.turning);
   frame.target.root = root_rates(*database_, weighted);
@@ -112,6 +131,25 @@ Eigen::MatrixXf FrameSolver::positions(const std::vector<Path>& paths) const {
   for (std::size_t i = 0; i < paths.size(); ++i)
     out.col(static_cast<Eigen::Index>(i)) = database_->positions().row(paths[i].frame).transpose();
   return out;
+}
+
+void FrameSolver::retrieve_posed_sensors(const std::vector<Path>& paths, const SignalWindow& window,
+                                         std::vector<Mat3>& posed_sensors) const {
+  static thread_local WeightedPaths weighted;
+  static thread_local Eigen::VectorXd weights, points, before;
+  put_weights(paths, window, weighted, weights);
+  put_mean_points(weighted.paths, weights, points, before);
+  posed_sensors.resize(static_cast<std::size_t>(num_sensors_));
+  put_posed_sensors(database_->skeleton(), signals_, config_.fit.lever_m, points, posed_sensors);
+}
+
+// The best paths, their own weights, and those by which poses are averaged.
+void FrameSolver::put_weights(const std::vector<Path>& paths, const SignalWindow& window,
+                              WeightedPaths& weighted, Eigen::VectorXd& weights) const {
+  put_best_paths(paths, config_.num_paths, weighted.paths);
+  put_softmax_weights(weighted.paths, config_.sharpness, weighted.weights);
+  weights = weighted.weights;
+  if (config_.regression_ridge > 0.0) put_regressed(weighted, window, weights);
 }
 
 // The weights by which the regression from signals to poses predicts.
@@ -158,18 +196,24 @@ StandingFeet FrameSolver::feet(const WeightedPaths& weighted, const SignalWindow
 
 // The mean of the retrieved poses, its limbs turned as their sensors measure, and how it moves.
 void FrameSolver::put_points(const std::vector<Path>& paths, const Eigen::VectorXd& weights,
-                             const SignalWindow& window, FrameTarget& target) const {
+                             const SignalWindow& window, RetrievedFrame& frame) const {
   static thread_local Eigen::VectorXd before;
-  const auto place = [&](Eigen::Index row, Eigen::VectorXd& points) {
-    place_oriented_limbs(database_->skeleton(), signals_, window.rows.row(row), config_.fit.lever_m,
-                         points);
-  };
+  FrameTarget& target = frame.target;
   put_mean_points(paths, weights, target.points, before);
-  place(window.at, target.points);
+  frame.posed_sensors.resize(static_cast<std::size_t>(num_sensors_));
+  put_posed_sensors(database_->skeleton(), signals_, config_.fit.lever_m, target.points,
+                    frame.posed_sensors);
   target.step.resize(before.size());
-  if (before.size() == 0) return;
-  place(std::max(window.at - 1, window.begin), before);
-  target.step = target.points - before;
+  if (before.size() > 0) target.step = target.points - before;
+  const auto place = [&](Eigen::Index row, Eigen::VectorXd& points) {
+    return place_oriented_limbs(database_->skeleton(), signals_, window.rows.row(row),
+                                config_.fit.lever_m, points);
+  };
+  const int num_placed = place(window.at, target.points);
+  if (before.size() == 0 || num_placed == 0) return;
+  // A limb that is placed from now on has not moved there.
+  if (place(std::max(window.at - 1, window.begin), before) == num_placed)
+    target.step = target.points - before;
 }
 
 // The weighted means of the points at the paths' ends and, where the fit uses steps, a frame before

@@ -7,6 +7,7 @@
 
 #include "sparse_mocap/path_regression/config.hpp"
 #include "sparse_mocap/path_regression/frame_target.hpp"
+#include "sparse_mocap/path_regression/sensor_headings.hpp"
 #include "sparse_mocap/reconstruction/method_info.hpp"
 #include "sparse_mocap/retrieval/features.hpp"
 #include "sparse_mocap/retrieval/knn_index.hpp"
@@ -20,6 +21,8 @@ struct RetrievedFrame {
   FrameTarget target;
   Diagnostics diagnostics;
   ExtremityVote extremities;
+  // R_heading_sensor of the retrieved poses' mean, one a sensor; see put_posed_sensors().
+  std::vector<Mat3> posed_sensors;
 };
 
 // What live and whole-take reconstruction do alike with a frame: search the database, and gather
@@ -35,6 +38,10 @@ class FrameSolver {
   Eigen::Index num_sensors() const { return num_sensors_; }
   int look_ahead() const;  // frames
   int reach_back() const;  // frames
+  // What is to be known of the headings of its sensors' orientations.
+  const HeadingSettings& headings() const { return headings_; }
+  bool has_headings() const;  // any
+  bool has_own_headings() const;
 
   // The database frames whose features are nearest to those of the window's row.
   void search(const retrieval::SignalWindow& window, std::vector<retrieval::Neighbour>& out) const;
@@ -45,13 +52,20 @@ class FrameSolver {
   // The poses that paths lead to: one column a path, 3 a joint, m, heading frame.
   Eigen::MatrixXf positions(const std::vector<retrieval::Path>& paths) const;
 
+  // Of that only where the poses have the sensors.
+  void retrieve_posed_sensors(const std::vector<retrieval::Path>& paths,
+                              const retrieval::SignalWindow& window,
+                              std::vector<Mat3>& posed_sensors) const;
+
  private:
+  void put_weights(const std::vector<retrieval::Path>& paths, const retrieval::SignalWindow& window,
+                   retrieval::WeightedPaths& weighted, Eigen::VectorXd& weights) const;
   void put_regressed(const retrieval::WeightedPaths& weighted,
                      const retrieval::SignalWindow& window, Eigen::VectorXd& weights) const;
   retrieval::StandingFeet feet(const retrieval::WeightedPaths& weighted,
                                const retrieval::SignalWindow& window) const;
   void put_points(const std::vector<retrieval::Path>& paths, const Eigen::VectorXd& weights,
-                  const retrieval::SignalWindow& window, FrameTarget& target) const;
+                  const retrieval::SignalWindow& window, RetrievedFrame& frame) const;
   void put_mean_points(const std::vector<retrieval::Path>& paths, const Eigen::VectorXd& weights,
                        Eigen::VectorXd& now, Eigen::VectorXd& before) const;
 
@@ -65,6 +79,7 @@ class FrameSolver {
   retrieval::KnnIndex index_;
   std::vector<float> distance_factors_;  // of the clips; empty: all alike
   Config config_;
+  HeadingSettings headings_;
   retrieval::StandingHeights standing_heights_;
 };
 

@@ -10,7 +10,8 @@ namespace sparse_mocap::path_regression {
 
 LiveReconstructor::LiveReconstructor(const Config& config, const MethodContext& context)
     : solver_(config, context),
-      turning_(context.sensors),
+      turning_(context.sensors, config.use_own_headings),
+      headings_(solver_.headings()),
       fit_(solver_.database().skeleton(), solver_.database().frame_time_s(), config.fit),
       graph_(retrieval::clips_of_frames(solver_.database()),
              {solver_.config().penalty, solver_.config().forgetting}),
@@ -31,7 +32,7 @@ bool LiveReconstructor::step_into(const Reading& measured, PoseEstimate& estimat
     std::copy(recent_.data() + recent_.cols(), recent_.data() + recent_.size(), recent_.data());
     --num_recent_;
   }
-  retrieval::put_signals(reading, solver_.signals(), recent_.row(num_recent_++));
+  put_signals_of(reading);
   if (num_waiting_ == waiting_.size()) waiting_.emplace_back();
   waiting_[num_waiting_++] = reading;
   if (static_cast<int>(num_waiting_) <= solver_.look_ahead()) return false;
@@ -39,6 +40,16 @@ bool LiveReconstructor::step_into(const Reading& measured, PoseEstimate& estimat
   if (fitted_.size() <= num_held_) return false;
   put_fitted(fitted_.size() - 1 - num_held_, estimate);
   return true;
+}
+
+// With headings as far as they are known by now.
+void LiveReconstructor::put_signals_of(const Reading& reading) {
+  if (solver_.has_headings()) {
+    turned_ = reading;
+    turn_headings(headings_.offsets_rad(), turned_);
+  }
+  retrieval::put_signals(solver_.has_headings() ? turned_ : reading, solver_.signals(),
+                         recent_.row(num_recent_++));
 }
 
 std::vector<PoseEstimate> LiveReconstructor::flush() {
@@ -59,6 +70,7 @@ void LiveReconstructor::reset() {
   fitted_.clear();
   graph_.reset();
   turning_.reset();
+  headings_.reset();
   num_waiting_ = 0;
   num_recent_ = 0;
 }
@@ -70,6 +82,10 @@ void LiveReconstructor::solve_next() {
   solver_.search(window, neighbours_);
   graph_.extend(neighbours_);
   solver_.retrieve(graph_.paths(), window, waiting_.front(), retrieved_);
+  if (solver_.has_headings()) {
+    put_heading_hints(waiting_.front(), retrieved_.posed_sensors, heading_hints_);
+    headings_.observe(heading_hints_);
+  }
   if (!targets_.empty())
     retrieved_.target.agreement =
         evened_agreement(retrieved_.target.agreement, targets_.back().agreement);

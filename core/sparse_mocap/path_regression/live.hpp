@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "sparse_mocap/path_regression/frame_solver.hpp"
-#include "sparse_mocap/path_regression/oriented_limbs.hpp"
+#include "sparse_mocap/path_regression/sensor_headings.hpp"
+#include "sparse_mocap/path_regression/sensor_turning.hpp"
 #include "sparse_mocap/path_regression/take_fit.hpp"
 #include "sparse_mocap/retrieval/olng.hpp"
 
@@ -37,12 +38,14 @@ class LiveReconstructor : public LiveMethod {
   };
 
   double num_late() const { return solver_.look_ahead() + static_cast<double>(num_held_); }
+  void put_signals_of(const Reading& reading);
   void solve_next();
   void add_frame();
   void put_fitted(std::size_t at, PoseEstimate& estimate);
 
   FrameSolver solver_;
   TurningOf turning_;
+  SensorHeadings headings_;
   TakeFit fit_;
   // The last frames: those held back, and before them as many as a fit looks back.
   std::vector<FittedFrame> frames_;
@@ -55,6 +58,8 @@ class LiveReconstructor : public LiveMethod {
   std::size_t num_waiting_ = 0;
   std::vector<retrieval::Neighbour> neighbours_;
   RetrievedFrame retrieved_;
+  std::vector<HeadingHint> heading_hints_;
+  Reading turned_;
   std::size_t num_held_;
 };
 

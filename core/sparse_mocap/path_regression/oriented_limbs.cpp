@@ -2,9 +2,7 @@
 #include "sparse_mocap/path_regression/oriented_limbs.hpp"
 
 #include <algorithm>
-#include <utility>
 
-#include "sparse_mocap/base/quaternions.hpp"
 #include "sparse_mocap/motion/heading.hpp"
 #include "sparse_mocap/motion/standard_skeleton.hpp"
 #include "sparse_mocap/retrieval/shared_heading.hpp"
@@ -93,63 +91,27 @@ void place(const Skeleton& skeleton, const Site& site, const Mat3& R_heading_sit
   }
 }
 
-bool is_on_trunk_or_head(const Sensor& sensor) {
-  using namespace standard_joint;
-  const int joint = all_sites()[static_cast<std::size_t>(sensor.site)].orientation;
-  return joint == root || (joint >= lowerback && joint <= head);
-}
-
-std::vector<Sensor> with_usable_orientations(std::vector<Sensor> sensors) {
-  const bool is_usable = std::any_of(sensors.begin(), sensors.end(), [](const Sensor& sensor) {
-    return sensor.channels.has(Channel::orientation) && is_on_trunk_or_head(sensor);
-  });
-  constexpr Channels kOthers = Channel::specific_force | Channel::angular_velocity |
-                               Channel::gravity_direction | Channel::position;
-  for (Sensor& sensor : sensors)
-    if (!is_usable) sensor.channels = sensor.channels & kOthers;
-  return sensors;
-}
-
 }  // namespace
 
-std::vector<Sensor> with_turning(std::vector<Sensor> sensors) {
-  sensors = with_usable_orientations(std::move(sensors));
-  for (Sensor& sensor : sensors)
-    if (sensor.channels.has(Channel::orientation))
-      sensor.channels = sensor.channels | Channel::gravity_direction | Channel::angular_velocity;
-  return sensors;
-}
-
-TurningOf::TurningOf(std::vector<Sensor> sensors)
-    : sensors_(with_usable_orientations(std::move(sensors))) {}
-
-const Reading& TurningOf::operator()(const Reading& measured) {
-  told_ = measured;
-  for (std::size_t s = 0; s < sensors_.size(); ++s) {
-    const auto column = static_cast<Eigen::Index>(s);
-    const Eigen::Vector4d orientation = measured.orientation.col(column);
-    if (!sensors_[s].channels.has(Channel::orientation) || !orientation.allFinite()) continue;
-    const Quat R_world_sensor = quaternion_of(orientation).normalized();
-    if (!sensors_[s].channels.has(Channel::gravity_direction))
-      told_.gravity_direction.col(column) = R_world_sensor.conjugate() * kUp;
-    if (sensors_[s].channels.has(Channel::angular_velocity) || before_.num_sensors() == 0) continue;
-    const Eigen::Vector4d last = before_.orientation.col(column);
-    if (!last.allFinite()) continue;
-    const Eigen::AngleAxisd turn(quaternion_of(last).normalized().conjugate() * R_world_sensor);
-    told_.angular_velocity.col(column) =
-        turn.angle() * turn.axis() / (measured.time_s - before_.time_s);
+void put_posed_sensors(const Skeleton& skeleton, std::span<const retrieval::Signal> signals,
+                       double lever_m, const Eigen::VectorXd& points, std::vector<Mat3>& R) {
+  for (Mat3& each : R) each.setZero();
+  for (const auto& signal : signals) {
+    if (signal.channel != Channel::orientation) continue;
+    const Site& site = site_of(signal);
+    const auto tips = 3 * skeleton.num_joints() + 9 * site.orientation;
+    const Mat3 R_heading_joint = points.segment<9>(tips).reshaped(3, 3) / lever_m;
+    R[static_cast<std::size_t>(signal.sensor)] = R_heading_joint * site.R_joint_sensor;
   }
-  before_ = measured;
-  return told_;
 }
 
-void place_oriented_limbs(const Skeleton& skeleton, std::span<const retrieval::Signal> signals,
-                          const Eigen::Ref<const Eigen::RowVectorXf>& row, double lever_m,
-                          Eigen::VectorXd& points) {
+int place_oriented_limbs(const Skeleton& skeleton, std::span<const retrieval::Signal> signals,
+                         const Eigen::Ref<const Eigen::RowVectorXf>& row, double lever_m,
+                         Eigen::VectorXd& points) {
   static thread_local std::vector<Turned> sensors;
   static thread_local std::vector<Mat3> measured, retrieved;
   put_turned_sensors(signals, row, sensors);
-  if (sensors.empty()) return;
+  if (sensors.empty()) return 0;
   PosePoints pose(skeleton, lever_m, points);
   measured.clear();
   retrieved.clear();
@@ -160,6 +122,7 @@ void place_oriented_limbs(const Skeleton& skeleton, std::span<const retrieval::S
   const Mat3 R_heading_shared = yaw_rotation(-common_yaw_rad(measured, retrieved));
   for (const Turned& sensor : sensors)
     place(skeleton, *sensor.site, R_heading_shared * sensor.R_shared_site, pose);
+  return static_cast<int>(sensors.size());
 }
 
 }  // namespace sparse_mocap::path_regression

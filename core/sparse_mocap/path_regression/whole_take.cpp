@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "sparse_mocap/base/ordered_work.hpp"
 #include "sparse_mocap/path_regression/merged_motion.hpp"
 #include "sparse_mocap/path_regression/take_fit.hpp"
-#include "sparse_mocap/path_regression/two_way_paths.hpp"
+#include "sparse_mocap/path_regression/take_headings.hpp"
+#include "sparse_mocap/path_regression/take_search.hpp"
 
 namespace sparse_mocap::path_regression {
 namespace {
@@ -27,15 +27,6 @@ constexpr double kWorthALook_m = 0.08;  // less apart it is not offered
 
 std::size_t num_parts_of(const Config& config) {
   return kFirstParts + kPartsOfAlternative * static_cast<std::size_t>(config.alternatives);
-}
-
-retrieval::FeatureRows signal_rows(const std::vector<Reading>& take,
-                                   const std::vector<retrieval::Signal>& signals) {
-  retrieval::FeatureRows rows(static_cast<Eigen::Index>(take.size()),
-                              static_cast<Eigen::Index>(3 * signals.size()));
-  for (std::size_t t = 0; t < take.size(); ++t)
-    rows.row(static_cast<Eigen::Index>(t)) = retrieval::signal_row(take[t], signals);
-  return rows;
 }
 
 // Reports the progress of one of these parts.
@@ -63,9 +54,7 @@ struct WholeTakeReconstructor::SearchedTake {
   retrieval::FeatureRows signals;
   TwoWayPaths paths;
 
-  retrieval::SignalWindow window(std::size_t t) const {
-    return {signals, 0, signals.rows(), static_cast<Eigen::Index>(t)};
-  }
+  retrieval::SignalWindow window(std::size_t t) const { return window_at(signals, t); }
 };
 
 // What was retrieved for each frame of a take, or of a part.
@@ -127,30 +116,29 @@ struct WholeTakeReconstructor::FittedPart {
   }
 };
 
-// of(i) for each i < count, worked out on all threads; reached(i) is called on this one on the way.
-template <typename Result, typename Reached, typename Of>
-std::vector<Result> WholeTakeReconstructor::in_parallel(std::size_t count, const Reached& reached,
-                                                        const Of& of) const {
-  constexpr std::size_t kPiece = 16;  // frames
-  std::vector<Result> results(count);
-  const auto work = [&](std::size_t piece, const std::stop_token&) {
-    const std::size_t begin = piece * kPiece, end = std::min(count, begin + kPiece);
-    for (std::size_t i = begin; i < end; ++i) results[i] = of(i);
-    return piece;
-  };
-  work_in_order((count + kPiece - 1) / kPiece, num_threads_, work, [](std::size_t, std::size_t) {},
-                [&](std::size_t p) { reached(p * kPiece); });
-  return results;
-}
-
 std::vector<PoseEstimate> WholeTakeReconstructor::solve(const std::vector<Reading>& measured,
                                                         const Progress& progress) {
   for (const auto& reading : measured) require_sensors(reading, solver_.num_sensors());
-  const std::size_t num_frames = measured.size();
+  alternatives_.clear();
+  std::vector<Reading> take = turned(measured);
+  if (!asks_for_headings(solver_, take.size())) return solved(std::move(take), progress);
+  const std::size_t num_parts = num_parts_of(solver_.config());
+  share_headings(solver_, num_threads_, part_of(progress, 0, num_parts + 1, take.size()), take);
+  const Progress rest(
+      Progress::Callback([&](std::size_t done, std::size_t total, std::string_view what) {
+        progress.report(measured.size() + done, measured.size() + total, what);
+        return true;
+      }));
+  return solved(std::move(take), rest);
+}
+
+// From readings whose orientations share a heading.
+std::vector<PoseEstimate> WholeTakeReconstructor::solved(std::vector<Reading> readings,
+                                                         const Progress& progress) {
+  const std::size_t num_frames = readings.size();
   const std::size_t num_parts = num_parts_of(solver_.config());
   const auto part = [&](std::size_t i) { return part_of(progress, i, num_parts, num_frames); };
-  alternatives_.clear();
-  const SearchedTake take = searched(measured, part(0));
+  const SearchedTake take = searched(std::move(readings), part(0));
   RetrievedTake first = retrieved(take, part(1));
   std::vector<FittedFrame> frames;
   for (const auto& target : first.targets)
@@ -162,35 +150,28 @@ std::vector<PoseEstimate> WholeTakeReconstructor::solve(const std::vector<Readin
   return estimates(take, std::move(first), frames);
 }
 
-WholeTakeReconstructor::SearchedTake WholeTakeReconstructor::searched(
-    const std::vector<Reading>& measured, const Progress& progress) {
+std::vector<Reading> WholeTakeReconstructor::turned(const std::vector<Reading>& measured) {
   turning_.reset();
-  const Config& config = solver_.config();
-  SearchedTake take{
-      {},
-      {},
-      {retrieval::clips_of_frames(solver_.database()), {config.penalty, config.forgetting}}};
-  for (const auto& reading : measured) take.readings.push_back(turning_(reading));
-  take.signals = signal_rows(take.readings, solver_.signals());
-  const std::size_t num_frames = measured.size();
-  using Neighbours = std::vector<retrieval::Neighbour>;
-  const std::vector<Neighbours> columns = in_parallel<Neighbours>(
-      num_frames, [&](std::size_t t) { progress.report(t, num_frames, "searching"); },
-      [&](std::size_t t) {
-        Neighbours found;
-        solver_.search(take.window(t), found);
-        return found;
-      });
-  take.paths.run(columns, config.num_paths,
-                 [&] { progress.report(num_frames, num_frames, "searching"); });
+  std::vector<Reading> take;
+  for (const auto& reading : measured) take.push_back(turning_(reading));
   return take;
+}
+
+WholeTakeReconstructor::SearchedTake WholeTakeReconstructor::searched(
+    std::vector<Reading> take, const Progress& progress) const {
+  const retrieval::FeatureRows signals = signal_rows(take, solver_.signals());
+  TwoWayPaths paths = paths_of(solver_, signals, num_threads_, [&](std::size_t t) {
+    progress.report(t, take.size(), "searching");
+  });
+  return {std::move(take), signals, std::move(paths)};
 }
 
 WholeTakeReconstructor::RetrievedTake WholeTakeReconstructor::retrieved(
     const SearchedTake& take, const Progress& progress) const {
   const std::size_t num_frames = take.readings.size();
   auto frames = in_parallel<RetrievedFrame>(
-      num_frames, [&](std::size_t t) { progress.report(t, num_frames, "reconstructing"); },
+      num_frames, num_threads_,
+      [&](std::size_t t) { progress.report(t, num_frames, "reconstructing"); },
       [&](std::size_t t) {
         RetrievedFrame frame;
         solver_.retrieve(take.paths.paths(t), take.window(t), take.readings[t], frame);
@@ -257,7 +238,7 @@ std::vector<WholeTakeReconstructor::Part> WholeTakeReconstructor::parts_elsewher
     const SearchedTake& take, const Known& known, const Progress& progress) const {
   const std::size_t num_frames = known.size();
   const auto modes = in_parallel<FrameModes>(
-      num_frames, [&](std::size_t t) { progress.report(t, num_frames, "searching"); },
+      num_frames, num_threads_, [&](std::size_t t) { progress.report(t, num_frames, "searching"); },
       [&](std::size_t t) {
         const auto& paths = take.paths.paths(t);
         Eigen::VectorXd weights = retrieval::softmax_weights(paths, solver_.config().sharpness);

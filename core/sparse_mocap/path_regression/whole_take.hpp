@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "sparse_mocap/path_regression/frame_solver.hpp"
-#include "sparse_mocap/path_regression/oriented_limbs.hpp"
 #include "sparse_mocap/path_regression/pose_modes.hpp"
+#include "sparse_mocap/path_regression/sensor_turning.hpp"
 
 namespace sparse_mocap::path_regression {
 
@@ -20,7 +20,9 @@ class WholeTakeReconstructor : public WholeTakeMethod {
  public:
   // Throws ConfigError.
   WholeTakeReconstructor(const Config& config, const MethodContext& context)
-      : solver_(config, context), turning_(context.sensors), num_threads_(context.num_threads) {}
+      : solver_(config, context),
+        turning_(context.sensors, config.use_own_headings),
+        num_threads_(context.num_threads) {}
 
   const Skeleton& skeleton() const override { return solver_.database().skeleton(); }
   double rate_hz() const override { return solver_.database().rate_hz(); }
@@ -36,7 +38,9 @@ class WholeTakeReconstructor : public WholeTakeMethod {
   struct FittedPart;
   using Known = std::vector<std::vector<Eigen::VectorXf>>;  // poses of each frame, see modes_of
 
-  SearchedTake searched(const std::vector<Reading>& measured, const Progress& progress);
+  std::vector<Reading> turned(const std::vector<Reading>& measured);
+  std::vector<PoseEstimate> solved(std::vector<Reading> readings, const Progress& progress);
+  SearchedTake searched(std::vector<Reading> take, const Progress& progress) const;
   RetrievedTake retrieved(const SearchedTake& take, const Progress& progress) const;
   void fit(std::vector<FittedFrame>& frames, const RetrievedTake& retrieved,
            const Progress& progress) const;
@@ -54,9 +58,6 @@ class WholeTakeReconstructor : public WholeTakeMethod {
                          const Progress& progress) const;
   double distance_m(const Part& part, const FittedPart& fitted, const Known& known) const;
   Eigen::VectorXf positions_of(const FittedFrame& frame) const;
-
-  template <typename Result, typename Reached, typename Of>
-  std::vector<Result> in_parallel(std::size_t count, const Reached& reached, const Of& of) const;
 
   FrameSolver solver_;
   TurningOf turning_;

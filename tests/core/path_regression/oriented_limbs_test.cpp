@@ -48,7 +48,7 @@ Reading reading_of(const JointTransforms& pose, double yaw_rad) {
 // Retrieved poses have the right upper body and hips, and other shanks, forearms and hands.
 TEST(PlaceOrientedLimbs, TurnsTheLimbsAsMeasuredWhereverThePerformerFaces) {
   const Skeleton skeleton = template_skeleton();
-  const auto signals = retrieval::all_signals(with_turning(worn()));
+  const auto signals = retrieval::all_signals(worn());
   Random random(1);
   for (const double yaw_rad : {0.0, 2.5}) {
     const JointRotations truth =
@@ -61,7 +61,7 @@ TEST(PlaceOrientedLimbs, TurnsTheLimbsAsMeasuredWhereverThePerformerFaces) {
     const Eigen::VectorXd wanted = pose_points(posed(truth), kLever_m);
     const double before = (points - wanted).norm();
     const auto row = retrieval::signal_row(reading_of(posed(truth), yaw_rad), signals);
-    place_oriented_limbs(skeleton, signals, row, kLever_m, points);
+    EXPECT_EQ(place_oriented_limbs(skeleton, signals, row, kLever_m, points), 6);
     EXPECT_LT((points - wanted).norm(), 0.2 * before);
     const Eigen::Index shank_tips = 3 * skeleton.num_joints() + 9 * ltibia;
     EXPECT_GT(before, 0.05);
@@ -74,39 +74,27 @@ TEST(PlaceOrientedLimbs, LeavesPosesWithoutOrientationsAlone) {
   const auto signals = retrieval::all_signals({{find_site("left_wrist")}, {find_site("pelvis")}});
   Eigen::VectorXd points = pose_points(rest_pose(skeleton), kLever_m);
   const Eigen::VectorXd before = points;
-  place_oriented_limbs(skeleton, signals, Eigen::RowVectorXf::Zero(6), kLever_m, points);
+  EXPECT_EQ(place_oriented_limbs(skeleton, signals, Eigen::RowVectorXf::Zero(6), kLever_m, points),
+            0);
   EXPECT_EQ(points, before);
 }
 
-TEST(WithTurning, LeavesOrientationsOutWhereNothingTellsTheHeading) {
-  const auto alone =
-      with_turning({{find_site("left_wrist"), 1.0, Channel::specific_force | Channel::orientation},
-                    {find_site("right_ankle"), 1.0, Channel::orientation}});
-  EXPECT_EQ(alone[0].channels, Channels(Channel::specific_force));
-  EXPECT_TRUE(alone[1].channels.is_empty());
-  EXPECT_EQ(with_turning(worn())[0].channels, Channel::specific_force | Channel::orientation |
-                                                  Channel::gravity_direction |
-                                                  Channel::angular_velocity);
-}
-
-TEST(TurningOf, SaysWhatAGyroscopeWould) {
-  const JointRotations rest(kNumStandardJoints, Mat3::Identity());
-  TurningOf turning(worn());
-  Reading first = reading_of(posed(rest), 0.0), second = reading_of(posed(rest), 0.1);
-  second.time_s = 0.04;
-  turning(first);
-  const Reading told = turning(second);
-  for (Eigen::Index s = 0; s < told.num_sensors(); ++s) {
-    const Vec3 up = told.gravity_direction.col(s);
-    EXPECT_NEAR(up.norm(), 1.0, 1e-9);
-    EXPECT_NEAR(up.dot(told.angular_velocity.col(s)), 0.1 / 0.04, 1e-6);  // about the vertical
-    EXPECT_NEAR(told.angular_velocity.col(s).norm(), 0.1 / 0.04, 1e-6);
+TEST(PosedSensors, AreWhereThePoseHasThem) {
+  const Skeleton skeleton = template_skeleton();
+  auto sensors = worn();
+  sensors[1].channels = Channel::specific_force;
+  Random random(2);
+  const JointTransforms pose =
+      posed(joint_rotations(skeleton, random.column(skeleton.num_angles(), 0.4)));
+  std::vector<Mat3> R(sensors.size(), Mat3::Identity());
+  put_posed_sensors(skeleton, retrieval::all_signals(sensors), kLever_m,
+                    pose_points(pose, kLever_m), R);
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    const Site& site = all_sites()[static_cast<std::size_t>(sensors[s].site)];
+    const Mat3 wanted = s == 1 ? Mat3(Mat3::Zero())
+                               : Mat3(pose.R_world_joint[site.orientation] * site.R_joint_sensor);
+    EXPECT_LT((R[s] - wanted).norm(), 1e-9) << s;
   }
-  Reading measured = second;
-  measured.gravity_direction.setConstant(0.5);
-  TurningOf own({{find_site("head"), 1.0,
-                  Channel::orientation | Channel::gravity_direction | Channel::angular_velocity}});
-  EXPECT_EQ(own(measured).gravity_direction.col(0), measured.gravity_direction.col(0));
 }
 
 }  // namespace
