@@ -141,6 +141,7 @@ SENTENCES = {
     "Hold still": "Stillhalten",
     "The last pose was {degrees} degrees off": "Die letzte Pose war {degrees} Grad daneben",
     "As in a mirror": "Wie im Spiegel",
+    "Differs from A: {parts}": "Weicht von A ab: {parts}",
     "searching": "Ähnliche Bewegungen suchen",
     "fitting": "Posen einpassen",
     "smoothing": "Bewegung glätten",

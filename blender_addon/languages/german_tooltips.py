@@ -207,6 +207,22 @@ TOOLTIPS = {
     "Play another action on a ghost of the active character, to compare them": (
         "Eine andere Action auf einem Geist des aktiven Charakters abspielen, zum Vergleichen"
     ),
+    "Also look for up to two other motions that fit the sensors about as well, B and C. Only in "
+    "best quality; takes longer": (
+        "Auch bis zu zwei andere Bewegungen suchen, B und C, die etwa ebenso gut zu den Sensoren "
+        "passen. Nur in bester Qualität; dauert länger"
+    ),
+    "Also look for other motions that fit the sensors about as well": (
+        "Auch andere Bewegungen suchen, die etwa ebenso gut zu den Sensoren passen"
+    ),
+    "Let the active character play this motion of the take: A, or another that fits the sensors "
+    "about as well": (
+        "Den aktiven Charakter diese Bewegung des Takes spielen lassen: A oder eine andere, die "
+        "etwa ebenso gut zu den Sensoren passt"
+    ),
+    "The motions that its last reconstruction offers": (
+        "Die Bewegungen, die die letzte Rekonstruktion anbietet"
+    ),
     "Remove the ghost of the active character": "Den Geist des aktiven Charakters entfernen",
     "Add a simple body to the active figure, for previews and test renders": (
         "Der aktiven Figur einen einfachen Körper geben, für Vorschau und Testbilder"

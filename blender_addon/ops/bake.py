@@ -10,9 +10,16 @@ from bpy.props import StringProperty
 from bpy.types import Action, Context, Operator
 
 from ..scene.armature import editable
+from ..scene.compat import assign_action
 from ..scene.ghost import hide_ghost, show_ghost
 from ..scene.nla import push_to_nla
-from ..scene.performance import facts_of, perform_steps, performed_action, replace_actions
+from ..scene.performance import (
+    alternatives_of,
+    facts_of,
+    perform_steps,
+    performed_action,
+    replace_actions,
+)
 from ..scene.settings import settings_of
 from ..scene.targets import own_figure, placement_of
 from ..session.bake import PlacedTake, place_job
@@ -120,6 +127,29 @@ class SPARSEMOCAP_OT_compare(NowOperator, Operator):
         return f'"{ghost.name}" plays "{action.name}"'
 
 
+class SPARSEMOCAP_OT_show_alternative(NowOperator, Operator):
+    """Let the character play another motion that fits the take."""
+
+    bl_idname = "sparse_mocap.show_alternative"
+    bl_label = "Show Alternative"
+    bl_description = (
+        "Let the active character play this motion of the take: A, or another that fits the "
+        "sensors about as well"
+    )
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    letter: StringProperty(name="Letter", default="A", options={"SKIP_SAVE"})
+
+    def act(self, context: Context) -> str:
+        """Assign its action."""
+        other = alternatives_of(_action(context)).get(self.letter)
+        if other is None:
+            raise InputError(f"This take has no alternative {self.letter}")
+        armature = editable(context.view_layer.objects.active)
+        assign_action(armature, other)
+        return f'"{armature.name}" plays "{other.name}"'
+
+
 class SPARSEMOCAP_OT_stop_comparing(NowOperator, Operator):
     """Remove the ghost."""
 
@@ -161,6 +191,7 @@ class SPARSEMOCAP_OT_next_poor_part(NowOperator, Operator):
 CLASSES = (
     SPARSEMOCAP_OT_update_action,
     SPARSEMOCAP_OT_next_poor_part,
+    SPARSEMOCAP_OT_show_alternative,
     SPARSEMOCAP_OT_push_to_nla,
     SPARSEMOCAP_OT_compare,
     SPARSEMOCAP_OT_stop_comparing,

@@ -15,7 +15,14 @@ from ..scene.targets import chosen_armatures, held_warning, own_figure, placemen
 from ..scene.translations import tr_line
 from ..session.bake import PlacedTake, placed
 from ..session.job import Job
-from ..session.methods import Items, choice_of, default_of, has_best_quality, option_items
+from ..session.methods import (
+    Items,
+    choice_of,
+    default_of,
+    has_best_quality,
+    option_items,
+    with_alternatives,
+)
 from ..session.reconstruct import reconstruct_job
 from ..session.steps import Steps
 from .job_operator import JobOperator
@@ -40,6 +47,11 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
     offline: BoolProperty(
         name="Best quality", description="Use the whole take for every frame", options=SKIP
     )
+    alternatives: BoolProperty(
+        name="Alternatives",
+        description="Also look for other motions that fit the sensors about as well",
+        options=SKIP,
+    )
     start_frame: FloatProperty(name="Start frame", default=1.0, options=SKIP)
     reuse_armature: BoolProperty(name="Reuse armature", options=SKIP)
     whole_frames: BoolProperty(name="Whole frames", default=True, options=SKIP)
@@ -56,10 +68,14 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
         if not is_chosen("options"):
             self.options = options_text(settings)
         self.fill_from_scene(
-            context, "offline", "start_frame", "reuse_armature", "whole_frames", "extend_scene"
-        )
+            context, "offline", "alternatives", "start_frame", "reuse_armature", "whole_frames",
+            "extend_scene",
+        )  # fmt: skip
         model = bpy.path.abspath(settings.training.model)
         choice, renamed = choice_of(self.method, self.preset, self.options, model)
+        is_best = self.offline and has_best_quality(choice.method)
+        if self.alternatives and is_best:
+            choice = with_alternatives(choice)
         if renamed:
             self.report({"WARNING"}, tr_line(renamed))
         armatures = chosen_armatures(context)
@@ -75,7 +91,7 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
             bpy.path.abspath(settings.take),
             bpy.path.abspath(settings.calibration),
             choice=choice,
-            best_quality=self.offline and has_best_quality(choice.method),
+            best_quality=is_best,
             finish=lambda performance, progress: placed(performance, placement, progress),
         )
 
@@ -101,6 +117,8 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
         row = take_of(context.scene)
         if row is not None:
             row.match = performance.match.label
+            others = [other.letter for other in performance.alternatives]
+            row.letters = "/".join([performance.letter, *others]) if others else ""
         action = armature.animation_data.action
         return (
             f'"{action.name}" on "{armature.name}": {performance.duration_s:.1f} s, '

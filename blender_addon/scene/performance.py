@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
+from uuid import uuid4
 
 import bpy
 import numpy as np
@@ -11,6 +12,7 @@ from bpy.types import Action, Context, Object
 
 from ..session.bake import PlacedTake
 from ..session.errors import InputError
+from ..session.reconstruct import differences_text
 from ..session.retarget import RigTake
 from ..session.steps import Steps, part
 from .action import Reduction, action_steps
@@ -50,6 +52,12 @@ class Facts:
     """What would help."""
     odd_sensor: str = ""
     """The location of a sensor that fits far worse than the others."""
+    letter: str = "A"
+    """A, or B and C for alternatives of the take."""
+    differences: str = ""
+    """Where an alternative differs from A, and by how much."""
+    group: str = ""
+    """The same for a character's actions that are alternatives of each other."""
 
     def time_s(self, frame: float) -> float:
         """The time in the take at a frame of the scene; NaN where it is unknown."""
@@ -68,35 +76,47 @@ def perform_steps(context: Context, take: PlacedTake, figure: Object | None) -> 
     figure: the add-on's own figure to use; None: a new one, unless the take has characters.
     Raises InputError or ValueError; the scene is then unchanged, also when closed early.
     """
-    made: list[tuple[str, Action]] = []
-    num_parts = len(take.rig_takes) + (figure is not None or not take.rig_takes)
-    share, new_figure = 1.0 / num_parts, None
+    made: list[_Made] = []
+    versions = (take, *take.alternatives)
+    share, new_figure = 1.0 / len(versions), None
     figure_name = figure.name if figure is not None else ""
     with selection_back_on_error(context):
         try:
-            for number, rig_take in enumerate(take.rig_takes):
-                armature = editable(_armature(rig_take.target.armature))
-                name = _action_name(take, rig_take)
-                reduction = _reduction(take, rig_take.target.controls.units_per_metre)
-                steps = rig_action_steps(name, armature, rig_take, take.frames, reduction)
-                made.append((armature.name, (yield from part(steps, number * share, share))))
-            if num_parts > len(take.rig_takes):
-                if figure_name:
-                    rig = rig_of(_armature(figure_name), take.motion.skeleton)
-                else:
-                    rig = new_armature(context, take.motion.skeleton)
-                    new_figure = rig.armature
-                reduction = _reduction(take, rig.units_per_metre)
-                name = take.performance.name
-                steps = action_steps(name, rig, take.motion, take.frames, reduction)
-                made.append((rig.armature.name, (yield from part(steps, 1.0 - share, share))))
-                use_quaternions(rig.armature)
+            if not figure_name and not take.rig_takes:
+                new_figure = new_armature(context, take.motion.skeleton).armature
+                figure_name = new_figure.name
+            for number, version in enumerate(versions):
+                steps = _making_steps(version, figure_name, made)
+                yield from part(steps, number * share, share)
         except BaseException:
-            remove_actions([action for _, action in made])
+            remove_actions([action for _, action, _ in made])
             if new_figure is not None:
                 remove_armature(new_figure)
             raise
-    return _assign(context, take, made)
+    return _assign(context, made)
+
+
+_Made = tuple[str, Action, PlacedTake]
+"""An armature's name, the action that was made for it, and what it is of."""
+
+
+def _making_steps(take: PlacedTake, figure_name: str, made: list[_Made]) -> Steps[None]:
+    """Makes the actions of the characters and the figure, if there is one, and adds them."""
+    share = 1.0 / (len(take.rig_takes) + bool(figure_name))
+    for number, rig_take in enumerate(take.rig_takes):
+        armature = editable(_armature(rig_take.target.armature))
+        name = _action_name(take, rig_take)
+        reduction = _reduction(take, rig_take.target.controls.units_per_metre)
+        steps = rig_action_steps(name, armature, rig_take, take.frames, reduction)
+        made.append((armature.name, (yield from part(steps, number * share, share)), take))
+    if figure_name:
+        rig = rig_of(_armature(figure_name), take.motion.skeleton)
+        reduction = _reduction(take, rig.units_per_metre)
+        name = take.performance.name
+        figure_steps = action_steps(name, rig, take.motion, take.frames, reduction)
+        action = yield from part(figure_steps, 1.0 - share, share)
+        made.append((rig.armature.name, action, take))
+        use_quaternions(rig.armature)
 
 
 def _reduction(take: PlacedTake, units_per_metre: float) -> Reduction | None:
@@ -104,9 +124,23 @@ def _reduction(take: PlacedTake, units_per_metre: float) -> Reduction | None:
     return Reduction(errors[0], 0.01 * errors[1] * units_per_metre) if errors is not None else None
 
 
-def _assign(context: Context, take: PlacedTake, made: list[tuple[str, Action]]) -> Object:
-    match = take.performance.match
-    facts = Facts(
+def _assign(context: Context, made: list[_Made]) -> Object:
+    """Let each character play its first action; returns the last character."""
+    played: dict[str, Action] = {}
+    run = uuid4().hex
+    for name, action, take in made:
+        action[_FACTS] = asdict(replace(_facts(take), group=f"{run} {name}"))
+        if name not in played:
+            played[name] = action
+            assign_action(bpy.data.objects[name], action)
+    armature = bpy.data.objects[list(played)[-1]]
+    select_only(context, armature)
+    return armature
+
+
+def _facts(take: PlacedTake) -> Facts:
+    performance, match = take.performance, take.performance.match
+    return Facts(
         take.performance.duration_s,
         match.label,
         match.is_guess,
@@ -117,13 +151,25 @@ def _assign(context: Context, take: PlacedTake, made: list[tuple[str, Action]]) 
         " ".join(match.seconds),
         match.advice,
         match.odd_sensor,
+        performance.letter,
+        differences_text(performance.differences),
     )
-    for name, action in made:
-        action[_FACTS] = asdict(facts)
-        armature = bpy.data.objects[name]
-        assign_action(armature, action)
-    select_only(context, armature)
-    return armature
+
+
+def alternatives_of(action: Action) -> dict[str, Action]:
+    """The alternatives that an action of a take belongs to, by letter; none if it is the only one.
+
+    Itself is among them.
+    """
+    facts = facts_of(action)
+    if facts is None or not facts.group:
+        return {}
+    found = {}
+    for other in bpy.data.actions:
+        others = facts_of(other)
+        if others is not None and others.group == facts.group:
+            found[others.letter] = other
+    return dict(sorted(found.items())) if len(found) > 1 else {}
 
 
 def replace_actions(names: dict[str, str]) -> None:
@@ -133,7 +179,11 @@ def replace_actions(names: dict[str, str]) -> None:
     """
     for armature, name in names.items():
         old, new = bpy.data.actions.get(name), performed_action(bpy.data.objects.get(armature))
-        if old is not None and new is not None and new != old and facts_of(old) is not None:
+        if old is None or new is None or new == old:
+            continue
+        before, now = facts_of(old), facts_of(new)
+        if before is not None and now is not None:
+            new[_FACTS] = asdict(replace(now, group=before.group))
             bpy.data.actions.remove(old)
             new.name = name
 

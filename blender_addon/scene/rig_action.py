@@ -100,7 +100,8 @@ def _action_for(name: str, armature: Object, take: RigTake) -> tuple[Action, Cur
         curves = curves_for(action, getattr(data, "action_slot", None))
         others = [curve for curve in curves.all() if not _is_keyed(curve.data_path, keyed)]
         if others:
-            action.name = name
+            if old.name != name:  # otherwise Blender would rename the old one
+                action.name = name
             for curve in curves.all():
                 if _is_keyed(curve.data_path, keyed) or curve.data_path in properties:
                     curves.remove(curve)

@@ -76,6 +76,9 @@ class SPARSEMOCAP_PG_take(PropertyGroup):
     duration_s: FloatProperty(name="Length", description="In s")
     num_sensors: IntProperty(name="Sensors")
     match: StringProperty(name="Match", description="How well its last reconstruction matched")
+    letters: StringProperty(
+        name="Alternatives", description="The motions that its last reconstruction offers"
+    )
     is_starred: BoolProperty(name="Star", description="Mark a good take")
 
 
@@ -180,6 +183,13 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
             "Off: the same as in a live preview"
         ),
         default=True,
+    )
+    alternatives: BoolProperty(
+        name="Alternatives",
+        description=(
+            "Also look for up to two other motions that fit the sensors about as well, B and C. "
+            "Only in best quality; takes longer"
+        ),
     )
     start_frame: FloatProperty(
         name="Start frame",

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -50,6 +50,8 @@ class PlacedTake:
     placement: Placement
     motion: Any  # sparse_mocap.Motion, with the poses that get keys
     rig_takes: tuple[RigTake, ...]
+    alternatives: tuple[PlacedTake, ...] = ()
+    """Other motions of the take, placed alike."""
 
     @property
     def frames(self) -> Floats:
@@ -59,7 +61,7 @@ class PlacedTake:
 
 
 def placed(performance: Performance, placement: Placement, progress: Progress) -> PlacedTake:
-    """The take on the characters of the placement. Raises Cancelled."""
+    """The take on the characters of the placement, with its alternatives. Raises Cancelled."""
     motion, contacts = performance.motion, performance.contacts
     if placement.part_s is not None:
         begin, end = _frames_of(placement.part_s, motion)
@@ -74,13 +76,18 @@ def placed(performance: Performance, placement: Placement, progress: Progress) -
         takes.append(rig_take(target, motion, contacts, placement.lock))
     if not progress(1, 1, ""):
         raise Cancelled("Cancelled")
+    others = tuple(placed(other, placement, progress) for other in performance.alternatives)
     keep(performance)
-    return PlacedTake(performance, placement, motion, tuple(takes))
+    return PlacedTake(performance, placement, motion, tuple(takes), others)
 
 
 def place_job(performance: Performance, placement: Placement) -> Job:
-    """The job that puts a result on the characters again; its result is a PlacedTake."""
-    return Job(PLACING_AGAIN, lambda progress: placed(performance, placement, progress))
+    """The job that puts a result on the characters again; its result is a PlacedTake.
+
+    Its alternatives are results of their own.
+    """
+    alone = replace(performance, alternatives=())
+    return Job(PLACING_AGAIN, lambda progress: placed(alone, placement, progress))
 
 
 def _frames_of(part_s: tuple[float, float], motion: Any) -> tuple[int, int]:

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from .core import core, missing_reason
 from .errors import InputError
 from .file_cache import FileCache
+
+_ALTERNATIVES = "alternatives"  # the option
 
 Items = list[tuple[str, str, str]]
 """Identifiers, labels and descriptions."""
@@ -100,6 +102,19 @@ def default_of(method: str, option: str) -> str:
             if (known.name, candidate.name) == (method, option):
                 return str(candidate.default)
     return ""
+
+
+def has_alternatives(method: str) -> bool:
+    """Whether the method (empty: the default) can offer alternatives of a take."""
+    known = [one for one in _methods() if one.name == method] or list(_methods()[:1])
+    return any(option.name == _ALTERNATIVES for one in known for option in one.options)
+
+
+def with_alternatives(choice: MethodChoice) -> MethodChoice:
+    """The choice with as many alternatives as there can be, unless it says how many."""
+    if not has_alternatives(choice.method) or _ALTERNATIVES in dict(choice.options):
+        return choice
+    return replace(choice, options=(*choice.options, (_ALTERNATIVES, "2")))
 
 
 def has_best_quality(method: str) -> bool:

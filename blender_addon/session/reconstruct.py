@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from .methods import MethodChoice, needs_database
 from .take import LoadedTake, takes
 
 RECONSTRUCTING = "Reconstructing"
+ALTERNATIVES = ("B", "C")
 _MOST_KEPT = 8
 
 
@@ -43,11 +44,24 @@ class Performance:
     """(T,) numbers of the types of motion that those belong to."""
     notes: tuple[str, ...] = ()
     """What the method says of the take, a line each."""
+    letter: str = "A"
+    """A, or B and C for its alternatives."""
+    differences: tuple[tuple[float, float, float], ...] = ()
+    """Where an alternative differs from A: from and to (s of the take), and by how much (m)."""
+    alternatives: tuple[Performance, ...] = ()
+    """Other motions that fit the sensors about as well."""
 
     def frame_at(self, time_s: float) -> int | None:
         """The pose at a time; None outside the take."""
         frame = round(time_s / self.motion.frame_time_s) if np.isfinite(time_s) else -1
         return frame if 0 <= frame < self.motion.num_frames else None
+
+
+def differences_text(parts: Sequence[tuple[float, float, float]]) -> str:
+    """Where two motions differ: "1.4-3.2 s (11 cm), 5.0-5.8 s (9 cm)"."""
+    return ", ".join(
+        f"{begin:.1f}-{end:.1f} s ({100.0 * distance:.0f} cm)" for begin, end, distance in parts
+    )
 
 
 _kept: dict[str, Performance] = {}
@@ -119,9 +133,20 @@ def reconstruct(
         calibration=calibration,
         progress=progress,
     )
+    others = zip(ALTERNATIVES, solved.alternatives, strict=False)
+    return replace(
+        _performance(take.name, solved, motions),
+        alternatives=tuple(
+            replace(_performance(f"{take.name} {letter}", other, motions), letter=letter)
+            for letter, other in others
+        ),
+    )
+
+
+def _performance(name: str, solved: Any, motions: Any) -> Performance:
     motion = solved.motion
     return Performance(
-        name=take.name,
+        name=name,
         motion=motion,
         contacts=np.asarray(solved.contacts),
         duration_s=(motion.num_frames - 1) * motion.frame_time_s,
@@ -133,4 +158,5 @@ def reconstruct(
             solved.diagnostics.get("motion_type", np.zeros((motion.num_frames, 1)))
         )[:, 0].astype(np.int64),
         notes=tuple(solved.notes),
+        differences=tuple(solved.differences),
     )

@@ -3,18 +3,18 @@
 
 from __future__ import annotations
 
-from bpy.types import Context, Panel, UILayout
+from bpy.types import Action, Context, Panel, UILayout
 
 from ..scene import overlay, sensor_graph
 from ..scene.armature import is_ours
 from ..scene.ghost import ghost_of
-from ..scene.performance import Facts, facts_of, performed_action
+from ..scene.performance import Facts, alternatives_of, facts_of, performed_action
 from ..scene.settings import SPARSEMOCAP_PG_settings, settings_of
 from ..scene.translations import tr
 from ..session.bake import PLACING_AGAIN
 from ..session.core import missing_reason
 from ..session.match import ODD_SENSOR, poor_parts
-from ..session.methods import has_best_quality, missing_file, preset_items
+from ..session.methods import has_alternatives, has_best_quality, missing_file, preset_items
 from ..session.names import shown_site
 from ..session.reconstruct import RECONSTRUCTING, kept
 from . import text
@@ -184,6 +184,8 @@ def _quality(layout: UILayout, settings: SPARSEMOCAP_PG_settings) -> None:
         return
     row.prop(settings, "offline", text="Live", toggle=True, invert_checkbox=True)
     row.prop(settings, "offline", text="Best", toggle=True)
+    if settings.offline and has_alternatives(settings.method):
+        layout.prop(settings, "alternatives")
 
 
 def _performed(layout: UILayout, context: Context) -> None:
@@ -203,6 +205,7 @@ def _performed(layout: UILayout, context: Context) -> None:
         ("Match", tr(facts.match)),
     ]
     text.facts(layout, context, rows)
+    _alternatives(layout, context, action, facts)
     _poor(layout, context, facts)
     if job_is_running(PLACING_AGAIN):
         action_button(layout, "sparse_mocap.update_action", "NONE", PLACING_AGAIN, is_ready=True)
@@ -222,6 +225,22 @@ def _performed(layout: UILayout, context: Context) -> None:
     else:
         row.operator("sparse_mocap.stop_comparing", icon="GHOST_DISABLED")
     row.operator("sparse_mocap.push_to_nla", text="To NLA", icon="NLA_PUSHDOWN")
+
+
+def _alternatives(layout: UILayout, context: Context, action: Action, facts: Facts) -> None:
+    """The motions of the take to choose from, and where the shown one differs from the first."""
+    letters = alternatives_of(action)
+    if not letters:
+        return
+    row = layout.row(align=True)
+    for letter in letters:
+        row.operator(
+            "sparse_mocap.show_alternative", text=letter, translate=False,
+            depress=letter == facts.letter,
+        ).letter = letter  # fmt: skip
+    if facts.differences:
+        told = tr("Differs from A: {parts}").format(parts=facts.differences)
+        text.paragraph(layout, context, told)
 
 
 def _poor(layout: UILayout, context: Context, facts: Facts) -> None:

@@ -55,6 +55,8 @@ class SPARSEMOCAP_UL_takes(UIList):
         if text.is_wide(context) and item.num_sensors:
             sensors = tr("{count} sensors").format(count=item.num_sensors)
             seconds.label(text=sensors, translate=False)
+        if item.letters:
+            row.label(text=item.letters, translate=False)
         row.label(text="", icon=_MATCH_ICONS.get(item.match, "BLANK1"))
 
 
