@@ -4,9 +4,10 @@
 accuracy_table.py FOLDER [-o ACCURACY.md] [--json-folder DIR]
 
 Runs `sparse-mocap evaluate` on FOLDER for a known performer (scenario 1) and an unknown one
-(scenario 3), with and without gyroscopes, live and in best quality. What it writes depends on the
-data and the code alone: the same ones give the same bytes. With --json-folder the JSON of each
-evaluation is kept there, and what is there already is not run again.
+(scenario 3), with accelerometers, with gyroscopes and with trackers of orientation, live and in
+best quality. What it writes depends on the data and the code alone: the same ones give the same
+bytes. With --json-folder the JSON of each evaluation is kept there, and what is there already is
+not run again.
 """
 
 from __future__ import annotations
@@ -22,6 +23,16 @@ from typing import Any
 
 ACCURACY = Path(__file__).with_name("ACCURACY.md")
 SCENARIOS = {1: "known performer", 3: "unknown performer"}
+KINDS = {
+    "accelerometers": (),
+    "gyroscopes": ("--gyroscopes",),
+    "orientations": ("--channels", "specific_force,orientation", "--noise", "inertial"),
+}
+TITLES = {
+    "accelerometers": "accelerometers",
+    "gyroscopes": "accelerometers and gyroscopes",
+    "orientations": "accelerometers and orientations, worn 2° askew, whose headings drift",
+}
 BASELINES = {
     "oracle": "oracle",
     "playback": "playback of the best path in the database",
@@ -68,19 +79,28 @@ in [PAPER.md](PAPER.md).
   as far as in truth, drift of root and heading after 2 s, and precision and recall of the warning
   that a reconstruction is no better than the clip's own mean pose. All are means over the clips but
   the largest step, the largest jerk ratio and the number of jumps.
+- Orientations are those of trackers that are worn 2° askew (with a bias and noise of the
+  accelerations as well) and whose headings drift by 0.1°/s.
 """
 
 
-def evaluate(folder: Path, scenario: int, gyroscopes: bool, kept: Path) -> Evaluation:
+def evaluate(folder: Path, scenario: int, kind: str, kept: Path) -> Evaluation:
     """Run one evaluation, unless its JSON is kept."""
-    path = kept / f"scenario_{scenario}{'_gyroscopes' if gyroscopes else ''}.json"
+    path = kept / f"scenario_{scenario}_{kind}.json"
     if not path.exists():
         command = [sys.executable, "-m", "sparse_mocap", "evaluate", "--offline"]
         command += ["--database-source", str(folder), "--scenario", str(scenario)]
-        command += ["--json", str(path), "--cache", str(kept)] + ["--gyroscopes"] * gyroscopes
+        command += ["--json", str(path), "--cache", str(kept), *KINDS[kind]]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     found: Evaluation = json.loads(path.read_text(encoding="utf-8"))
     return found
+
+
+def kind_of(found: Evaluation) -> str:
+    """What the sensors of an evaluation were, of KINDS."""
+    if "orientation" in found["settings"]["channels"]:
+        return "orientations"
+    return "gyroscopes" if found["settings"]["with_gyroscopes"] else "accelerometers"
 
 
 def label(method: str) -> str:
@@ -178,20 +198,20 @@ def setting(found: Evaluation) -> str:
 
 def document(evaluations: Iterable[Evaluation]) -> str:
     """ACCURACY.md. Raises ValueError if a scenario is missing."""
-    found = {(e["settings"]["with_gyroscopes"], e["scenario"]): e for e in evaluations}
+    found = {(kind_of(e), e["scenario"]): e for e in evaluations}
     for scenario in SCENARIOS:
-        if (False, scenario) not in found:
+        if ("accelerometers", scenario) not in found:
             raise ValueError(f"there is no evaluation of scenario {scenario} without gyroscopes")
-    plain = {scenario: found[False, scenario] for scenario in SCENARIOS}
-    lines = [HEAD, setting(plain[1]), "", "Mean error in cm:", "", *head(["", *SCENARIOS.values()])]
-    lines += summary(plain, "", ())
-    if all((True, scenario) in found for scenario in SCENARIOS):
-        inertial = {scenario: found[True, scenario] for scenario in SCENARIOS}
-        lines += summary(inertial, ", with gyroscopes", tuple(BASELINES))
-    for gyroscopes, scenario in sorted(found):
-        worn = "accelerometers and gyroscopes" if gyroscopes else "accelerometers"
-        lines += ["", f"## {SCENARIOS[scenario].capitalize()}, {worn}", ""]
-        lines += details(found[gyroscopes, scenario])
+    kinds = [kind for kind in KINDS if all((kind, scenario) in found for scenario in SCENARIOS)]
+    plain = found["accelerometers", next(iter(SCENARIOS))]
+    lines = [HEAD, setting(plain), "", "Mean error in cm:", "", *head(["", *SCENARIOS.values()])]
+    for kind in kinds:
+        suffix, skip = ("", ()) if kind == "accelerometers" else (f", with {kind}", (*BASELINES,))
+        lines += summary({n: found[kind, n] for n in SCENARIOS}, suffix, skip)
+    for kind in kinds:
+        for scenario in SCENARIOS:
+            lines += ["", f"## {SCENARIOS[scenario].capitalize()}, {TITLES[kind]}", ""]
+            lines += details(found[kind, scenario])
     return "\n".join(lines) + "\n"
 
 
@@ -206,9 +226,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         kept = given.json_folder or Path(temporary)
         kept.mkdir(parents=True, exist_ok=True)
         evaluations = [
-            evaluate(given.folder, scenario, gyroscopes, kept)
-            for gyroscopes in (False, True)
-            for scenario in SCENARIOS
+            evaluate(given.folder, scenario, kind, kept) for kind in KINDS for scenario in SCENARIOS
         ]
         given.output.write_text(document(evaluations), encoding="utf-8")
 

@@ -27,7 +27,7 @@ MOVEMENT = {
 DRIFTS = {"root_after_2_s_cm": 25.6, "heading_after_2_s_deg": None}
 
 
-def found(scenario: int, gyroscopes: bool, mean_cm: float) -> dict[str, Any]:
+def found(scenario: int, kind: str, mean_cm: float) -> dict[str, Any]:
     """As evaluate --json writes it; each method is a centimetre worse than the one before."""
     methods = {
         method: {
@@ -47,7 +47,8 @@ def found(scenario: int, gyroscopes: bool, mean_cm: float) -> dict[str, Any]:
         for index, (method, late) in enumerate(LATENCIES.items())
     }
     settings = {
-        "source": "/somewhere/mocap", "with_gyroscopes": gyroscopes,
+        "source": "/somewhere/mocap", "with_gyroscopes": kind == "gyroscopes",
+        "channels": ["specific_force"] + ["orientation"] * (kind == "orientations"),
         "sites": ["left_wrist", "right_wrist"], "noise": "none", "frames": 12345, "rate_hz": 25.0,
     }  # fmt: skip
     tests = [{"actor": "ada", "motion_class": name} for name in CLASSES]
@@ -55,7 +56,14 @@ def found(scenario: int, gyroscopes: bool, mean_cm: float) -> dict[str, Any]:
     return told | {"truth_movement": MOVEMENT}
 
 
-ALL = [found(1, False, 5.04), found(3, False, 8.0), found(1, True, 4.0), found(3, True, 7.0)]
+ALL = [
+    found(1, "accelerometers", 5.04),
+    found(3, "accelerometers", 8.0),
+    found(1, "gyroscopes", 4.0),
+    found(3, "gyroscopes", 7.0),
+    found(1, "orientations", 3.0),
+    found(3, "orientations", 6.0),
+]
 
 
 def test_the_document_has_every_figure_and_no_path() -> None:
@@ -66,13 +74,14 @@ def test_the_document_has_every_figure_and_no_path() -> None:
     assert "| `path_regression`, best quality | 6.0 | 9.0 |" in lines
     assert "| oracle | 7.0 | 10.0 |" in lines
     assert "| `path_regression`, live quality, with gyroscopes | 4.0 | 7.0 |" in lines
+    assert "| `path_regression`, live quality, with orientations | 3.0 | 6.0 |" in lines
     assert "| oracle, with gyroscopes" not in text
     assert "| `path_regression`, live quality | 5.04 | 2.00 | 3.46 | 12.3 | 0.123 | 75 |" in lines
     assert "| oracle | 9.00 | 2.00 | 3.46 | | 0.123 | |" in lines
     assert "| truth | 2.5 | 1.2 | 30 | 11.1 | 1.2 | 0.0 | 1.0 | 0 | | | |" in lines
     moved = "2.5 | 1.2 | 30 | 11.1 | 1.2 | 0.0 | 1.2 / 2.0 | 2 | 26 | - | 0.50 / -"
     assert f"| `path_regression`, best quality | {moved} |" in lines
-    assert text.count("| walk | ") == 4
+    assert text.count("| walk | ") == 6
     assert "`mocap`; 2 clips performed" in text
     assert "12,345" in text
     assert "/somewhere" not in text
@@ -95,9 +104,9 @@ def test_a_folder_becomes_a_table(library: Path, tmp_path: Path) -> None:
     accuracy_table.main([str(source), "-o", str(out), "--json-folder", str(folder)])
     written = out.read_bytes()
     told = {path.stem: json.loads(path.read_text()) for path in folder.glob("*.json")}
-    assert len(told) == 4
-    for method, figures in told["scenario_1"]["methods"].items():
-        unknown = told["scenario_3"]["methods"][method]
+    assert len(told) == 6
+    for method, figures in told["scenario_1_accelerometers"]["methods"].items():
+        unknown = told["scenario_3_accelerometers"]["methods"][method]
         means = f"{figures['mean_cm']:.1f} | {unknown['mean_cm']:.1f}"
         assert f"| {accuracy_table.label(method)} | {means} |" in written.decode()
     accuracy_table.main([str(source), "-o", str(out), "--json-folder", str(folder)])
