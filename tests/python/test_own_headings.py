@@ -46,7 +46,9 @@ def moved(begin: tuple[float, float], end: tuple[float, float]) -> Floats:
     return np.stack([smooth(b, e, 1.0) for b, e in zip(begin, end, strict=True)], axis=1)
 
 
-def motion(skeleton: Skeleton, path_deg: Floats, phase: float) -> Motion:
+def motion(
+    skeleton: Skeleton, path_deg: Floats, phase: float, turning_degps: float = 0.0
+) -> Motion:
     """The left arm goes along a path, and all limbs swing a little meanwhile."""
     names, count = list(skeleton.names), len(path_deg)
     times_s = np.arange(count) / RATE_HZ
@@ -63,6 +65,7 @@ def motion(skeleton: Skeleton, path_deg: Floats, phase: float) -> Motion:
         rotations[:, names.index(name)] = [
             about_axis((1.0, 0.0, 0.0), float(np.radians(angle))) for angle in swing_deg
         ]
+    rotations[:, 0] = [about_axis(UP, float(np.radians(turning_degps * t))) for t in times_s]
     roots = np.tile([0.0, 0.95, 0.0], (count, 1))
     return Motion(skeleton, 1.0 / RATE_HZ, roots, rotations)
 
@@ -87,7 +90,8 @@ def ambiguous(tmp_path_factory: pytest.TempPathFactory, database: MotionDatabase
 @pytest.fixture(scope="module")
 def performed_motion(ambiguous: MotionDatabase) -> Motion:
     path_deg = [held(HANGING, 3.0), moved(HANGING, SIDE), held(SIDE, 3.0), moved(SIDE, FRONT)]
-    return motion(ambiguous.skeleton, np.concatenate([*path_deg, held(FRONT, 4.0)]), 0.7)
+    whole_deg = np.concatenate([*path_deg, held(FRONT, 4.0)])
+    return motion(ambiguous.skeleton, whole_deg, 0.7, turning_degps=25.0)
 
 
 def worn(performed: Motion, *, gives: str) -> Take:
