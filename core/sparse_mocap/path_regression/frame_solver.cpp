@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -39,6 +40,15 @@ std::vector<float> column_weights(const std::vector<Signal>& signals, const Conf
 double agreement(const Eigen::VectorXd& spread_m, double wide_spread_m) {
   const double mean_square = spread_m.squaredNorm() / static_cast<double>(spread_m.size());
   return 1.0 / (1.0 + mean_square / (wide_spread_m * wide_spread_m));
+}
+
+// A row with those next to it, so that limbs do not tremble as orientations do.
+void put_steady_row(const SignalWindow& window, Eigen::Index row, Eigen::RowVectorXf& steady) {
+  const auto before = window.rows.row(std::max(row - 1, window.begin));
+  const auto after = window.rows.row(std::min(row + 1, window.end - 1));
+  steady = 0.25F * before + 0.5F * window.rows.row(row) + 0.25F * after;
+  for (Eigen::Index column = 0; column < steady.size(); ++column)
+    if (std::isnan(steady[column])) steady[column] = window.rows(row, column);
 }
 
 HeadingSettings heading_settings(const std::vector<Sensor>& sensors, const Config& config,
@@ -206,8 +216,10 @@ void FrameSolver::put_points(const std::vector<Path>& paths, const Eigen::Vector
   target.step.resize(before.size());
   if (before.size() > 0) target.step = target.points - before;
   const auto place = [&](Eigen::Index row, Eigen::VectorXd& points) {
-    return place_oriented_limbs(database_->skeleton(), signals_, window.rows.row(row),
-                                config_.fit.lever_m, points);
+    static thread_local Eigen::RowVectorXf steady;
+    put_steady_row(window, row, steady);
+    return place_oriented_limbs(database_->skeleton(), signals_, steady, config_.fit.lever_m,
+                                points);
   };
   const int num_placed = place(window.at, target.points);
   if (before.size() == 0 || num_placed == 0) return;

@@ -62,7 +62,8 @@ void put_turned_sensors(std::span<const retrieval::Signal> signals,
     if (signals[s].channel != Channel::orientation) continue;
     const Mat3 R = retrieval::rotation_of_axes(
         row.segment<retrieval::kAxesColumns>(3 * static_cast<Eigen::Index>(s)));
-    if (R.allFinite()) found.push_back({&site_of(signals[s]), R});
+    // Its axes may be means, which are a little short and not quite at right angles.
+    if (R.allFinite()) found.push_back({&site_of(signals[s]), Quat(R).normalized().matrix()});
     ++s;  // its second axis
   }
   std::sort(found.begin(), found.end(), [](const Turned& a, const Turned& b) {
