@@ -87,6 +87,11 @@ struct WholeTakeReconstructor::Part {
 
   std::size_t end() const { return begin + modes.size(); }
   bool has(std::size_t frame) const { return frame >= begin && frame < end(); }
+  // How much a fit of it counts in a frame: wholly inside, and less and less away from it.
+  double share(std::size_t frame, double rate_hz) const {
+    const std::size_t away = frame < begin ? begin - frame : frame - std::min(frame, end() - 1);
+    return smooth(1.0 - static_cast<double>(away) / std::max(kAround_s * rate_hz, 1.0));
+  }
   // How much one of its frames is of its own: little at its ends, which lead there from the first
   // motion's poses. Where the take begins or ends there is nothing to lead from.
   double presence(std::size_t frame, std::size_t num_frames, double rate_hz) const {
@@ -102,14 +107,13 @@ struct WholeTakeReconstructor::Part {
 struct WholeTakeReconstructor::FittedPart {
   std::size_t begin = 0;
   std::vector<FittedFrame> frames;
+  bool is_even = true;  // no joint jumps
 
-  // Puts it in place of a motion: wholly in the part, and less and less away from it.
+  // Puts it in place of a motion.
   void put(const Part& part, double rate_hz, std::vector<OtherFrame>& others) const {
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const std::size_t t = begin + i;
-      const std::size_t away = t < part.begin ? part.begin - t : t - std::min(t, part.end() - 1);
-      const double share =
-          smooth(1.0 - static_cast<double>(away) / std::max(kAround_s * rate_hz, 1.0));
+      const double share = part.share(t, rate_hz);
       if (share <= others[t].share) continue;
       others[t] = {frames[i], root_step(frames[i > 0 ? i - 1 : 0], frames[i]), share};
     }
@@ -219,7 +223,7 @@ void WholeTakeReconstructor::find_alternatives(const SearchedTake& take, const R
       const FittedPart fitted = fitted_part(part, there, first, frames,
                                             part_of(progress, i + 1, num_parts, frames.size()));
       const double apart_m = distance_m(part, fitted, known);
-      if (apart_m < kWorthALook_m) continue;
+      if (apart_m < kWorthALook_m || !fitted.is_even) continue;
       found.differences.push_back({static_cast<double>(part.begin) / rate_hz(),
                                    static_cast<double>(part.end()) / rate_hz(), apart_m});
       other.replace(part.begin, std::move(there));
@@ -298,8 +302,10 @@ WholeTakeReconstructor::FittedPart WholeTakeReconstructor::fitted_part(
       const double share = part.presence(t, frames.size(), rate_hz());
       const FrameTarget& own = retrieved.targets[t - part.begin];
       targets.back() = blended(first.targets[t], own, share, config.wide_spread_m);
-      if (before != nullptr && share < 1.0)
-        targets.back().step = targets.back().points - targets[targets.size() - 2].points;
+      const double share_before =
+          part.has(t - 1) ? part.presence(t - 1, frames.size(), rate_hz()) : 0.0;
+      if (t > 0 && targets.back().step.size() > 0)
+        targets.back().step += (share - share_before) * (own.points - first.targets[t].points);
       start = start_of(skeleton(), 1.0 / rate_hz(), own, before);
       start.rotations = between(frames[t].rotations, start.rotations, share);
     } else if (before != nullptr) {
@@ -309,7 +315,30 @@ WholeTakeReconstructor::FittedPart WholeTakeReconstructor::fitted_part(
   }
   TakeFit(skeleton(), 1.0 / rate_hz(), config.fit, num_threads_)
       .fit(fitted.frames, targets, 0, config.max_iterations, progress);
+  std::vector<FittedFrame> shown = fitted.frames;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const std::size_t t = fitted.begin + i;
+    shown[i].rotations = between(frames[t].rotations, shown[i].rotations, part.share(t, rate_hz()));
+  }
+  fitted.is_even = moves_as_asked(shown, targets);
   return fitted;
+}
+
+// Whether each joint moves about as the retrieved motions do: a fit may leave one that jumps.
+bool WholeTakeReconstructor::moves_as_asked(const std::vector<FittedFrame>& frames,
+                                            const std::vector<FrameTarget>& targets) const {
+  constexpr double kJump_mps = 5.0;
+  Eigen::VectorXf before, here;
+  for (std::size_t t = 0; t < frames.size(); ++t) {
+    before = std::move(here);
+    here = positions_of(frames[t]);
+    if (t > 0 && targets[t].step.size() > 0) {
+      const Eigen::VectorXf off = here - before - targets[t].step.head(here.size()).cast<float>();
+      const float most = off.reshaped(3, off.size() / 3).colwise().norm().maxCoeff();
+      if (static_cast<double>(most) * rate_hz() > kJump_mps) return false;
+    }
+  }
+  return true;
 }
 
 // The mean distance of a part's poses from those of the first motion.

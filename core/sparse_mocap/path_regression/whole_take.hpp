@@ -56,6 +56,8 @@ class WholeTakeReconstructor : public WholeTakeMethod {
   FittedPart fitted_part(const Part& part, const RetrievedTake& retrieved,
                          const RetrievedTake& first, const std::vector<FittedFrame>& frames,
                          const Progress& progress) const;
+  bool moves_as_asked(const std::vector<FittedFrame>& frames,
+                      const std::vector<FrameTarget>& targets) const;
   double distance_m(const Part& part, const FittedPart& fitted, const Known& known) const;
   Eigen::VectorXf positions_of(const FittedFrame& frame) const;
 
