@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter, deque
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -61,9 +62,17 @@ def match(solved: Reconstruction, database: MotionDatabase | None = None) -> str
 class LiveMatch:
     """How good the last live poses are likely to be, by the same measure as a take's match."""
 
-    def __init__(self, num_poses: int = 250, database: MotionDatabase | None = None) -> None:
-        """Takes how many poses are judged together, and the database that they are made from."""
-        self._database = database
+    def __init__(
+        self,
+        num_poses: int = 250,
+        database: MotionDatabase | None = None,
+        channels: Sequence[Sequence[str]] = (),
+    ) -> None:
+        """Takes how many poses are judged together, and the database that they are made from.
+
+        channels are those of each sensor.
+        """
+        self._database, self._channels = database, channels
         self._misfits: deque[float] = deque(maxlen=num_poses)
         self._frames: deque[JudgedFrame] = deque(maxlen=num_poses)
         self._quality: Quality | None = None
@@ -86,7 +95,7 @@ class LiveMatch:
         Also None before there are poses.
         """
         if self._frames and (self._quality is None or self._num_new >= _JUDGED_EVERY):
-            self._quality = judged(self._frames, self._database)
+            self._quality = judged(self._frames, self._database, self._channels)
             self._num_new = 0
         return self._quality
 

@@ -89,7 +89,8 @@ class LivePoses:
             devices=devices,
             largest_backlog=LARGEST_BACKLOG,
         )
-        self._match = core().report.LiveMatch(_NUM_POSES, motions)
+        used = [sensor.channels for sensor in self._reconstructor.sensors]
+        self._match = core().report.LiveMatch(_NUM_POSES, motions, used)
         self.latencies_s: deque[float] = deque(maxlen=_NUM_POSES)
         self._misfits: deque[NDArray[np.float64]] = deque(maxlen=_NUM_POSES)
         self._num_poses = 0

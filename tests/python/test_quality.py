@@ -29,7 +29,13 @@ from sparse_mocap.quality_calibration import calibrate_quality
 RATE_HZ = 10.0
 
 
-def told(spread_m: list[float], misfit_mps2: list[float], *, best: bool = False) -> Any:
+def told(
+    spread_m: list[float],
+    misfit_mps2: list[float],
+    *,
+    best: bool = False,
+    channels: tuple[str, ...] = ("specific_force",),
+) -> Any:
     """A reconstruction that says this of its frames; the database's rows follow each other."""
     count = len(spread_m)
     swing = np.where(np.arange(count) % 2 == 0, 1.0, -1.0)
@@ -44,7 +50,9 @@ def told(spread_m: list[float], misfit_mps2: list[float], *, best: bool = False)
             "sensor_misfit_mps2": np.tile(np.array(misfit_mps2)[:, None], (1, 2)),
             "database_frame": np.arange(count, dtype=float)[:, None],
         },
-        readings=SimpleNamespace(specific_force=force, times_s=np.arange(count) / RATE_HZ),
+        readings=SimpleNamespace(
+            specific_force=force, times_s=np.arange(count) / RATE_HZ, channels=[list(channels)] * 2
+        ),
         motion=SimpleNamespace(joint_positions=lambda frame: poses),
     )
 
@@ -70,6 +78,23 @@ def test_the_expected_error_has_its_closed_form() -> None:
         best = quality_of(told([spread_m] * 30, [misfit_mps2] * 30, best=True))
         assert best is not None
         assert best.share == pytest.approx(share * exp(-0.07), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("channel", "logarithm"), [("angular_velocity", -0.1), ("orientation", -0.28)]
+)
+def test_sensors_that_say_more_are_trusted_more(channel: str, logarithm: float) -> None:
+    plain = quality_of(told([0.1] * 30, [2.0] * 30))
+    more = quality_of(told([0.1] * 30, [2.0] * 30, channels=("specific_force", channel)))
+    assert plain is not None
+    assert more is not None
+    assert more.share == pytest.approx(plain.share * exp(logarithm), rel=1e-9)
+    judge = quality.JudgedFrame(0.1, 2.0, 1.0, np.ones((2, 3)), np.zeros((21, 3)))
+    live = [judge, judge._replace(specific_force=np.zeros((2, 3)))]
+    without = quality.judged(live).share
+    assert quality.judged(live, channels=[["specific_force", channel]] * 2).share == pytest.approx(
+        without * exp(logarithm), rel=1e-9
+    )
 
 
 def test_each_second_is_judged_by_what_is_near() -> None:

@@ -59,7 +59,8 @@ class LiveSession:
         self._file: TextIO | None = None
         self._num_written = 0  # joints
         self._begin_s: float | None = None
-        self._live_match = LiveMatch(_NUM_POSES, database)
+        used_channels = [sensor.channels for sensor in self._reconstructor.sensors]
+        self._live_match = LiveMatch(_NUM_POSES, database, used_channels)
         self.num_poses = 0
         self.latencies_s: deque[float] = deque(maxlen=_NUM_POSES)
         self.step_s: deque[float] = deque(maxlen=_NUM_POSES)
