@@ -20,6 +20,7 @@ from sparse_mocap.demo_motions import generate_library, generate_performance
 from support import addon, error_of, settings
 
 _BONES = ("mixamorig:Hips", "mixamorig:Head", "mixamorig:LeftHand", "mixamorig:RightFoot")
+_NAMES = ["ankle", "ankle B", "ankle C"]
 _CLIPS = ("walk_01", "walk_02", "squat_01", "squat_02", "kickleft_01", "kickright_01")
 
 
@@ -72,15 +73,17 @@ def test_the_animator_flips_between_the_motions_of_a_take():
     first = _solve(armature)
     performance = addon("scene.performance")
     others = performance.alternatives_of(first)
-    assert list(others) == ["A", "B"]
+    assert list(others) == ["A", "B", "C"]
     assert others["A"] == first
-    assert [action.name for action in bpy.data.actions] == ["ankle", "ankle B"]
+    assert [action.name for action in bpy.data.actions] == _NAMES
     assert others["B"].use_fake_user
-    assert settings().takes[0].letters == "A/B"
-    begin_s, end_s, _ = addon("session.reconstruct").kept("ankle B").differences[0]
+    assert settings().takes[0].letters == "A/B/C"
+    parts = addon("session.reconstruct").kept("ankle B").differences
+    begin_s, end_s, _ = parts[0]
+    farthest = max(parts, key=lambda part: part[2])
     facts = performance.facts_of(others["B"])
     assert facts.differences.startswith(f"{begin_s:.1f}-{end_s:.1f} s (")
-    middle = round(facts.frame_at(0.5 * (begin_s + end_s)))
+    middle = round(facts.frame_at(0.5 * (farthest[0] + farthest[1])))
     frames = [round(facts.frame_at(begin_s - 1.0)), middle]
     before = points_of(armature, frames, _BONES)
     assert {"A", "B"} <= set(_drawn()[1])
@@ -89,7 +92,8 @@ def test_the_animator_flips_between_the_motions_of_a_take():
     assert armature.animation_data.action == others["B"]
     after = points_of(armature, frames, _BONES)
     assert f"Differs from A: {begin_s:.1f}-{end_s:.1f} s" in _drawn()[0]
-    assert np.abs(after[0] - before[0]).max() < 1e-4
+    # The floor is that of the whole motion.
+    assert np.abs(after[0] - before[0]).max() < 1e-3
     assert np.abs(after[1] - before[1]).max() > 0.1
     assert bpy.ops.sparse_mocap.show_alternative(letter="A") == {"FINISHED"}
     assert armature.animation_data.action == first
@@ -102,16 +106,14 @@ def test_an_alternative_is_updated_alone():
     bpy.ops.sparse_mocap.show_alternative(letter="B")
     settings().smooth_s = 0.2
     assert bpy.ops.sparse_mocap.update_action() == {"FINISHED"}
-    assert [action.name for action in bpy.data.actions] == ["ankle", "ankle B"]
+    assert [action.name for action in bpy.data.actions] == _NAMES
     assert _shown(armature) == "B"
-    assert list(addon("scene.performance").alternatives_of(armature.animation_data.action)) == [
-        "A",
-        "B",
-    ]
+    found = addon("scene.performance").alternatives_of(armature.animation_data.action)
+    assert list(found) == ["A", "B", "C"]
     bpy.ops.sparse_mocap.show_alternative(letter="A")
     assert bpy.ops.sparse_mocap.update_action() == {"FINISHED"}
     assert _shown(armature) == "A"
-    assert len(bpy.data.actions) == 2
+    assert [action.name for action in bpy.data.actions] == _NAMES
 
 
 def test_the_figure_of_the_add_on_gets_them_too():
