@@ -14,9 +14,7 @@ from unittest.mock import MagicMock
 import bpy
 import numpy as np
 import rigs
-import sparse_mocap
 from rig_baking import points_of
-from sparse_mocap.demo_motions import generate_library, generate_performance
 from support import addon, error_of, settings
 
 _BONES = ("mixamorig:Hips", "mixamorig:Head", "mixamorig:LeftHand", "mixamorig:RightFoot")
@@ -27,6 +25,9 @@ _CLIPS = ("walk_01", "walk_02", "squat_01", "squat_02", "kickleft_01", "kickrigh
 @cache
 def _doubtful() -> tuple[str, str]:
     """A database, and a take of one ankle alone, which leaves much open."""
+    import sparse_mocap
+    from sparse_mocap.demo_motions import generate_library, generate_performance
+
     folder = Path(tempfile.mkdtemp(prefix="sparse_mocap_alternatives_"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     files = generate_library(folder / "all")

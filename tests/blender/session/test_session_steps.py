@@ -92,8 +92,7 @@ def test_reconstruct_gives_the_take_a_motion(files, method):
     assert performance.name == "part"
     assert performance.duration_s == pytest.approx(5.0, abs=0.1)
     assert np.isfinite(performance.motion.joint_positions("world")).all()
-    # The database holds that very motion; liu2011 does not search by the accelerations compared.
-    assert performance.match.label == ("fair" if method == "liu2011" else "good")
+    assert performance.match.label == "good"  # the database holds that very motion
     assert not performance.match.is_guess
 
 
