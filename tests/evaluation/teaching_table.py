@@ -68,7 +68,8 @@ writes this file.
   anew`). `Worn elsewhere`: 70 % of the way along the forearms and 45 % along the shanks.
 - Wrong poses: smooth turns of all joints put the taught poses off by 10 cm, as a video might.
 - Other movements: all own clips but those of the tested movement.
-- The preference of real readings was chosen on other clips than these (`--tune`).
+- Rows with real readings count as all others do; `--tune` shows, on other clips, what it would
+  change to prefer them.
 """
 
 
