@@ -29,7 +29,18 @@ def truth(performance: Path, database: MotionDatabase) -> Motion:
 
 
 def reconstructed(
-    take: Take, database: MotionDatabase, *, best_quality: bool, gyroscopes: bool
+    take: Take,
+    database: MotionDatabase,
+    *,
+    best_quality: bool,
+    gyroscopes: bool,
+    own_headings: bool = True,
 ) -> Motion:
     """The motion that the product's own method makes of a take, live or from the whole take."""
-    return reconstruct(take, database, best_quality=best_quality, use_gyroscopes=gyroscopes).motion
+    return reconstruct(
+        take,
+        database,
+        best_quality=best_quality,
+        use_gyroscopes=gyroscopes,
+        options={"use_own_headings": own_headings},
+    ).motion

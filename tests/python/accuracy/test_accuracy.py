@@ -32,6 +32,7 @@ STANDING_MPS = 0.15
 DRIFT_FRAMES = 50  # two seconds
 
 ANKLES = ("left_ankle", "right_ankle")
+# "With inclinations": gyroscopes say how sensors stand against gravity, and not where they point.
 FIGURES = [  # sensors, quality, what is measured, how much it is, and by how much it may differ
     ("wrists and ankles", "live", "error_cm", 3.040, 0.07),
     ("wrists and ankles", "live", "lag_ms", 5.8, 3.0),
@@ -48,6 +49,10 @@ FIGURES = [  # sensors, quality, what is measured, how much it is, and by how mu
     ("with gyroscopes", "live", "jerk_kmps3", 0.0665, 0.005),
     ("with gyroscopes", "whole take", "error_cm", 2.172, 0.07),
     ("with gyroscopes", "whole take", "hands_cm", 4.05, 0.15),
+    ("with inclinations", "live", "error_cm", 2.742, 0.07),
+    ("with inclinations", "live", "hands_cm", 5.02, 0.15),
+    ("with inclinations", "whole take", "error_cm", 2.568, 0.07),
+    ("with inclinations", "whole take", "hands_cm", 4.92, 0.15),
     ("with gyroscopes", "live", "heading_deg", 1.24, 0.3),
     ("with gyroscopes", "whole take", "heading_deg", 0.92, 0.3),
     ("wrists and ankles", "live", "sunk_cm", 0.0, 0.02),
@@ -87,7 +92,8 @@ def solve(take: Take, database: MotionDatabase) -> Iterator[Solve]:
             Take({site: take.sensors[site] for site in sites}),
             database,
             best_quality=quality == "whole take",
-            gyroscopes=sensors == "with gyroscopes",
+            gyroscopes=sensors in ("with gyroscopes", "with inclinations"),
+            own_headings=sensors != "with inclinations",
         )
 
     yield solved
