@@ -38,7 +38,8 @@ SECTION, VERSION = "quality", 1
 # Of 404 reconstructions of HDM05 and CMU clips, see quality_calibration: the logarithm of the error
 # as a part of the mean pose's, by measures_of().
 USUAL = (1.27, 0.69, 1.14, -1.09, -0.34, 0.35)
-# What it is beside that in best quality, and where sensors say more: half of HDM05's clips.
+# What is added in best quality, and where most sensors have gyroscopes or orientations: measured on
+# every second of HDM05's test clips.
 _BEST_QUALITY, _GYROSCOPES, _ORIENTATIONS = -0.07, -0.1, -0.28
 _TYPICAL_SPREAD_M, _TYPICAL_MISFIT_MPS2 = 0.06, 2.6
 

@@ -87,7 +87,10 @@ REPORTS = {
         "Das Ergebnis der Aufnahme ist von früher: Rekonstruieren drücken"
     ),
     "Choose the action to compare with": "Die Action wählen, mit der verglichen wird",
-    "This take has no alternative {letter}": "Dieser Take hat keine Alternative {letter}",
+    "This take has no alternative {letter}: tick Alternatives and press Reconstruct": (
+        "Diese Aufnahme hat keine Alternative {letter}: Alternativen ankreuzen und Rekonstruieren "
+        "drücken"
+    ),
     "The active object has no ghost": "Das aktive Objekt hat keinen Ghost",
     "No part of this take has a poor match": "Kein Teil dieser Aufnahme passt schlecht",
     "There is nothing from {begin} to {end} s: the take is {length} s long": (

@@ -30,10 +30,10 @@ TEACHING = {
         "Bewegung und Aufnahme haben ein Klatschen oder einen Sprung gemeinsam: daran ausrichten. "
         "Aus: durch Vergleichen aller Messwerte ausrichten"
     ),
-    "When the clap begins, in seconds of the take": (
+    "When the clap starts, in seconds from the start of the take": (
         "Wann das Klatschen beginnt, in Sekunden der Aufnahme"
     ),
-    "When the clap is over, in seconds of the take": (
+    "When the clap ends, in seconds from the start of the take": (
         "Wann das Klatschen vorbei ist, in Sekunden der Aufnahme"
     ),
     "Choose the motion file of the performance": "Die Bewegungsdatei der Aufführung wählen",

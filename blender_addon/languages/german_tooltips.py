@@ -207,21 +207,21 @@ TOOLTIPS = {
     "Play another action on a ghost of the active character, to compare them": (
         "Eine andere Action auf einem Geist des aktiven Charakters abspielen, zum Vergleichen"
     ),
-    "Also look for up to two other motions that fit the sensors about as well, B and C. Only in "
+    "Also find up to two other motions, B and C, that fit the sensors almost as well. Only in "
     "best quality; takes longer": (
-        "Auch bis zu zwei andere Bewegungen suchen, B und C, die etwa ebenso gut zu den Sensoren "
+        "Auch bis zu zwei andere Bewegungen suchen, B und C, die fast ebenso gut zu den Sensoren "
         "passen. Nur in bester Qualität; dauert länger"
     ),
-    "Also look for other motions that fit the sensors about as well": (
-        "Auch andere Bewegungen suchen, die etwa ebenso gut zu den Sensoren passen"
+    "Also find other motions that fit the sensors almost as well": (
+        "Auch andere Bewegungen suchen, die fast ebenso gut zu den Sensoren passen"
     ),
-    "Let the active character play this motion of the take: A, or another that fits the sensors "
-    "about as well": (
-        "Den aktiven Charakter diese Bewegung des Takes spielen lassen: A oder eine andere, die "
-        "etwa ebenso gut zu den Sensoren passt"
+    "Play this motion of the take on the active character: A is the best guess, B and C fit the "
+    "sensors almost as well": (
+        "Diese Bewegung der Aufnahme auf dem aktiven Charakter abspielen: A passt am besten, B und "
+        "C passen fast ebenso gut zu den Sensoren"
     ),
-    "The motions that its last reconstruction offers": (
-        "Die Bewegungen, die die letzte Rekonstruktion anbietet"
+    "The motions found by the last reconstruction of this take": (
+        "Die Bewegungen, die die letzte Rekonstruktion dieser Aufnahme gefunden hat"
     ),
     "Remove the ghost of the active character": "Den Geist des aktiven Charakters entfernen",
     "Add a simple body to the active figure, for previews and test renders": (

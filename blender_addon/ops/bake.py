@@ -133,8 +133,8 @@ class SPARSEMOCAP_OT_show_alternative(NowOperator, Operator):
     bl_idname = "sparse_mocap.show_alternative"
     bl_label = "Show Alternative"
     bl_description = (
-        "Let the active character play this motion of the take: A, or another that fits the "
-        "sensors about as well"
+        "Play this motion of the take on the active character: A is the best guess, B and C fit "
+        "the sensors almost as well"
     )
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
@@ -144,7 +144,10 @@ class SPARSEMOCAP_OT_show_alternative(NowOperator, Operator):
         """Assign its action."""
         other = alternatives_of(_action(context)).get(self.letter)
         if other is None:
-            raise InputError(f"This take has no alternative {self.letter}")
+            raise InputError(
+                f"This take has no alternative {self.letter}: "
+                "tick Alternatives and press Reconstruct"
+            )
         armature = editable(context.view_layer.objects.active)
         assign_action(armature, other)
         return f'"{armature.name}" plays "{other.name}"'

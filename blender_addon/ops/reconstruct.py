@@ -49,7 +49,7 @@ class SPARSEMOCAP_OT_reconstruct(JobOperator, Operator):
     )
     alternatives: BoolProperty(
         name="Alternatives",
-        description="Also look for other motions that fit the sensors about as well",
+        description="Also find other motions that fit the sensors almost as well",
         options=SKIP,
     )
     start_frame: FloatProperty(name="Start frame", default=1.0, options=SKIP)

@@ -77,7 +77,7 @@ class SPARSEMOCAP_PG_take(PropertyGroup):
     num_sensors: IntProperty(name="Sensors")
     match: StringProperty(name="Match", description="How well its last reconstruction matched")
     letters: StringProperty(
-        name="Alternatives", description="The motions that its last reconstruction offers"
+        name="Alternatives", description="The motions found by the last reconstruction of this take"
     )
     is_starred: BoolProperty(name="Star", description="Mark a good take")
 
@@ -187,7 +187,7 @@ class SPARSEMOCAP_PG_settings(PropertyGroup):
     alternatives: BoolProperty(
         name="Alternatives",
         description=(
-            "Also look for up to two other motions that fit the sensors about as well, B and C. "
+            "Also find up to two other motions, B and C, that fit the sensors almost as well. "
             "Only in best quality; takes longer"
         ),
     )

@@ -34,11 +34,13 @@ class SPARSEMOCAP_PG_teaching(PropertyGroup):
         ),
     )
     clap_from_s: FloatProperty(
-        name="From (s)", description="When the clap begins, in seconds of the take", min=0.0
+        name="From (s)",
+        description="When the clap starts, in seconds from the start of the take",
+        min=0.0,
     )
     clap_to_s: FloatProperty(
         name="To (s)",
-        description="When the clap is over, in seconds of the take",
+        description="When the clap ends, in seconds from the start of the take",
         min=0.0,
         default=2.0,
     )

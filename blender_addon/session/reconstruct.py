@@ -49,7 +49,7 @@ class Performance:
     differences: tuple[tuple[float, float, float], ...] = ()
     """Where an alternative differs from A: from and to (s of the take), and by how much (m)."""
     alternatives: tuple[Performance, ...] = ()
-    """Other motions that fit the sensors about as well."""
+    """Other motions that fit the sensors almost as well."""
 
     def frame_at(self, time_s: float) -> int | None:
         """The pose at a time; None outside the take."""

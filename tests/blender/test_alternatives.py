@@ -136,7 +136,7 @@ def test_without_them_a_take_is_one_motion():
     assert settings().takes[0].letters == ""
     assert "A" not in _drawn()[1]
     message = error_of(lambda: bpy.ops.sparse_mocap.show_alternative(letter="B"))
-    assert message == "This take has no alternative B"
+    assert message == "This take has no alternative B: tick Alternatives and press Reconstruct"
     # Live quality has none, whatever the setting says.
     settings().alternatives = True
     assert bpy.ops.sparse_mocap.reconstruct(offline=False) == {"FINISHED"}

@@ -113,7 +113,7 @@ def test_the_command_says_when_nothing_else_fits(
     )  # fmt: skip
     result = cli(*arguments, "--offline")
     assert result.exit_code == 0, result.output
-    assert "No other motion fits the sensors about as well." in result.stdout
+    assert "No other motion fits the sensors almost as well." in result.stdout
     assert [path.name for path in tmp_path.iterdir()] == ["out.bvh"]
     assert cli(*arguments).exit_code == 2
     assert "--offline" in cli(*arguments).output

@@ -49,7 +49,7 @@ def paper_options(command: Callable[..., Any]) -> Callable[..., Any]:
     for option in (
         click.option(
             "--every", type=click.IntRange(1), default=1, show_default=True,
-            help="With --paper alone: test only every Nth clip, for a first look.",
+            help="With --paper alone: test every Nth clip, for a quick first look.",
         ),
         click.option(
             "--part", "parts", type=click.Choice(list(PARTS)), multiple=True,

@@ -218,7 +218,7 @@ offline_option: Decorator = click.option(
 
 gyroscopes_option: Decorator = click.option(
     "--gyroscopes/--no-gyroscopes", default=True, show_default=True,
-    help="Also use how sensors are turned, of those with gyroscopes (gx,gy,gz) or orientations.",
+    help="Also use gyroscopes (gx,gy,gz) and orientations (qw,qx,qy,qz) where sensors have them.",
 )  # fmt: skip
 
 calibration_option: Decorator = click.option(

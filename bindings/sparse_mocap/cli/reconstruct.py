@@ -72,8 +72,8 @@ __all__ = ["body_of", "model_of", "reconstruct", "require_given"]
     "--alternatives",
     type=click.IntRange(0, 2),
     metavar="N",
-    help="In best quality, also write up to N (1 or 2) other motions that fit the sensors about as "
-    "well, as OUT_b and OUT_c beside the output.",
+    help="With --offline: also write up to N (1 or 2) other motions that fit the sensors almost as "
+    "well, as OUT_b and OUT_c.",
 )
 @click.option(
     "--json", "json_path", type=OutputPath(), help="Also write a report on every frame as JSON."
@@ -147,7 +147,7 @@ def _choice(
     if alternatives is None:
         return method_choice(method, preset, settings)
     if alternatives > 0 and not offline:
-        raise click.UsageError("--alternatives needs --offline: only best quality has them.")
+        raise click.UsageError("--alternatives works in best quality only: add --offline")
     return method_choice(method, preset, (*settings, ("alternatives", str(alternatives))))
 
 
@@ -232,7 +232,7 @@ def _write_alternatives(
         )
         click.echo(f"{path}: differs from {parts}")
     if wanted and not solved.alternatives:
-        click.echo("No other motion fits the sensors about as well.")
+        click.echo("No other motion fits the sensors almost as well.")
 
 
 def _beside(path: Path, letter: str) -> Path:

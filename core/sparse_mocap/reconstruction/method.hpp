@@ -49,7 +49,7 @@ struct Difference {
   double distance_m = 0.0;            // of the joints, mean over the part; heading frame
 };
 
-// Another motion that fits the readings of a take about as well.
+// Another motion that fits the readings of a take almost as well.
 struct Alternative {
   std::vector<PoseEstimate> estimates;  // one a reading
   std::vector<Difference> differences;  // from the motion that solve() gave, in order; not empty
