@@ -198,11 +198,17 @@ def test_a_position_along_the_bone_changes_the_reading(
         assert is_same == (site != "left_ankle")
 
 
+@pytest.mark.parametrize(
+    ("sensors", "apart_m"),
+    # A clavicle that moves as fast as people can may twist by half a degree, which is left out
+    # where the file is brought onto the standard skeleton.
+    [("--no-gyroscopes", 2e-4), ("--gyroscopes", 3e-4)],
+)
 def test_reconstruct_writes_motion_positions_and_report(
-    cli: Cli, take_path: Path, database_path: Path, tmp_path: Path
+    cli: Cli, take_path: Path, database_path: Path, tmp_path: Path, sensors: str, apart_m: float
 ) -> None:
     result = cli(
-        "reconstruct", "--database", database_path, take_path, "-o", tmp_path / "out.bvh",
+        "reconstruct", "--database", database_path, take_path, "-o", tmp_path / "out.bvh", sensors,
         "--positions", tmp_path / "out.csv", "--json", tmp_path / "out.json",
     )  # fmt: skip
     assert result.exit_code == 0, result.output
@@ -213,7 +219,7 @@ def test_reconstruct_writes_motion_positions_and_report(
     assert motion.num_frames == len(times) == len(positions) == len(told["frames"])
     assert joints == MotionDatabase(database_path).skeleton.names
     on_standard, _ = standard_motion(motion, MotionDatabase(database_path).skeleton)
-    np.testing.assert_allclose(on_standard.joint_positions("heading"), positions, atol=3e-4)
+    np.testing.assert_allclose(on_standard.joint_positions("heading"), positions, atol=apart_m)
     assert told["sites"] == ["left_wrist", "right_wrist", "left_ankle", "right_ankle"]
     assert (told["format"], told["format_version"]) == ("sparse_mocap_report", 1)
     assert told["options"]["method"] == "path_regression"
