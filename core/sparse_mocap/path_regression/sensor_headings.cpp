@@ -15,8 +15,8 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMostTrust = 2.0;  // of a hint
 
-HeadingHint turned_back(const HeadingHint& hint, double by_rad) {
-  return hint * std::polar(1.0, -by_rad);
+TrustedTurn turned_back(const TrustedTurn& turn, double by_rad) {
+  return turn * std::polar(1.0, -by_rad);
 }
 
 double decay_of(const HeadingSettings& settings) {
@@ -25,16 +25,16 @@ double decay_of(const HeadingSettings& settings) {
 
 // A sensor's sum of hints before the first one. A tracker seems to have been heard for long, with
 // the heading that all share.
-HeadingHint first_sum(const HeadingSettings& settings, std::size_t sensor) {
+TrustedTurn first_sum(const HeadingSettings& settings, std::size_t sensor) {
   return settings.is_own[sensor] ? 0.0 : kMostTrust / (1.0 - decay_of(settings));
 }
 
 // The sum with the next hint, which counts most. With a heading of its own it begins anew after a
 // silence.
-HeadingHint next_sum(const HeadingSettings& settings, std::size_t sensor, const HeadingHint& sum,
+TrustedTurn next_sum(const HeadingSettings& settings, std::size_t sensor, const TrustedTurn& sum,
                      const HeadingHint& hint, double common_rad) {
-  if (settings.is_own[sensor] && hint == 0.0) return 0.0;
-  return decay_of(settings) * sum + turned_back(hint, common_rad);
+  if (settings.is_own[sensor] && !hint.is_heard) return 0.0;
+  return decay_of(settings) * sum + turned_back(hint.turn, common_rad);
 }
 
 // What remains of an angle beyond a limit.
@@ -43,7 +43,7 @@ double beyond(double limit_rad, double angle_rad) {
 }
 
 void put_offsets(const HeadingSettings& settings, std::span<const HeadingHint> hints,
-                 std::span<const HeadingHint> sums, std::span<double> offsets_rad) {
+                 std::span<const TrustedTurn> sums, std::span<double> offsets_rad) {
   const double settled = kMostTrust * HeadingSettings::kSettled_s * settings.rate_hz;
   bool are_settled = true;
   for (std::size_t s = 0; s < sums.size(); ++s) {
@@ -51,7 +51,7 @@ void put_offsets(const HeadingSettings& settings, std::span<const HeadingHint> h
       offsets_rad[s] = beyond(HeadingSettings::kStyle_rad, std::arg(sums[s]));
       continue;
     }
-    offsets_rad[s] = hints[s] == 0.0 ? kUnknown : std::arg(sums[s]);
+    offsets_rad[s] = hints[s].is_heard ? std::arg(sums[s]) : kUnknown;
     are_settled &= std::isnan(offsets_rad[s]) || std::abs(sums[s]) >= settled;
   }
   for (std::size_t s = 0; s < sums.size() && !are_settled; ++s)
@@ -61,10 +61,10 @@ void put_offsets(const HeadingSettings& settings, std::span<const HeadingHint> h
 }  // namespace
 
 HeadingHint heading_hint(const Eigen::Vector4d& orientation, const Mat3& R_heading_sensor) {
-  if (!orientation.allFinite()) return 0.0;
+  if (!orientation.allFinite()) return {};
   const Mat3 sum =
       R_heading_sensor * quaternion_of(orientation).normalized().toRotationMatrix().transpose();
-  return {sum(0, 0) + sum(2, 2), sum(0, 2) - sum(2, 0)};
+  return {true, {sum(0, 0) + sum(2, 2), sum(0, 2) - sum(2, 0)}};
 }
 
 void put_heading_hints(const Reading& reading, std::span<const Mat3> R_heading_sensor,
@@ -76,10 +76,9 @@ void put_heading_hints(const Reading& reading, std::span<const Mat3> R_heading_s
 }
 
 void put_no_hints(const Reading& reading, std::vector<HeadingHint>& hints) {
-  constexpr double kNoTrust = 1e-9;  // not 0, which is a silence
   hints.clear();
   for (Eigen::Index s = 0; s < reading.num_sensors(); ++s)
-    hints.push_back(reading.orientation.col(s).allFinite() ? kNoTrust : 0.0);
+    hints.push_back({reading.orientation.col(s).allFinite(), 0.0});
 }
 
 void turn_headings(std::span<const double> offsets_rad, Reading& reading) {
@@ -110,10 +109,10 @@ void SensorHeadings::reset() {
 
 // By those whose offsets are known; at first by the clearest hint, whose offset is 0 therefore.
 double SensorHeadings::common_rad(std::span<const HeadingHint> hints) const {
-  HeadingHint common = 0.0, clearest = 0.0;
+  TrustedTurn common = 0.0, clearest = 0.0;
   for (std::size_t s = 0; s < hints.size(); ++s) {
-    if (sums_[s] != 0.0) common += turned_back(hints[s], std::arg(sums_[s]));
-    if (std::abs(hints[s]) > std::abs(clearest)) clearest = hints[s];
+    if (sums_[s] != 0.0) common += turned_back(hints[s].turn, std::arg(sums_[s]));
+    if (std::abs(hints[s].turn) > std::abs(clearest)) clearest = hints[s].turn;
   }
   return std::arg(common != 0.0 ? common : clearest);
 }
@@ -135,9 +134,9 @@ std::vector<std::vector<double>> whole_take_offsets(
   for (const auto& of_reading : hints) common_rad.push_back(causal.observe(of_reading));
   std::vector<std::vector<double>> offsets_rad(count, std::vector<double>(num_sensors));
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<std::vector<HeadingHint>> sums(count, std::vector<HeadingHint>(num_sensors));
+    std::vector<std::vector<TrustedTurn>> sums(count, std::vector<TrustedTurn>(num_sensors));
     for (std::size_t s = 0; s < num_sensors; ++s) {
-      HeadingHint before = first_sum(settings, s), behind = 0.0;
+      TrustedTurn before = first_sum(settings, s), behind = 0.0;
       for (std::size_t t = 0; t < count; ++t)
         sums[t][s] += before = next_sum(settings, s, before, hints[t][s], common_rad[t]);
       for (std::size_t t = count; t-- > 0;)
@@ -145,9 +144,9 @@ std::vector<std::vector<double>> whole_take_offsets(
     }
     for (std::size_t t = 0; t < count; ++t) {
       put_offsets(settings, hints[t], sums[t], offsets_rad[t]);
-      HeadingHint common = 0.0;
+      TrustedTurn common = 0.0;
       for (std::size_t s = 0; s < num_sensors; ++s)
-        if (sums[t][s] != 0.0) common += turned_back(hints[t][s], std::arg(sums[t][s]));
+        if (sums[t][s] != 0.0) common += turned_back(hints[t][s].turn, std::arg(sums[t][s]));
       common_rad[t] = std::arg(common);
     }
   }

@@ -30,10 +30,14 @@ struct HeadingSettings {
   static constexpr double kStyle_rad = 0.2;
 };
 
-// What a retrieved pose says of a sensor's heading: the argument is the turn about the vertical
-// from its own world to the pose's heading frame, the modulus (at most 2) how much that is to be
-// trusted. 0 where the sensor is silent.
-using HeadingHint = std::complex<double>;
+// The argument is a turn about the vertical, the modulus how much it is to be trusted.
+using TrustedTurn = std::complex<double>;
+
+// What a retrieved pose says of a sensor's heading.
+struct HeadingHint {
+  bool is_heard = false;   // whether the sensor has an orientation
+  TrustedTurn turn = 0.0;  // from its own world to the pose's heading frame, trusted by 2 at most
+};
 
 // R_heading_sensor: of the retrieved pose; a mean of rotations that disagree counts less.
 HeadingHint heading_hint(const Eigen::Vector4d& orientation, const Mat3& R_heading_sensor);
@@ -41,7 +45,7 @@ HeadingHint heading_hint(const Eigen::Vector4d& orientation, const Mat3& R_headi
 void put_heading_hints(const Reading& reading, std::span<const Mat3> R_heading_sensor,
                        std::vector<HeadingHint>& hints);
 
-// Hints that tell nothing, of those sensors that have an orientation then.
+// Hints without a turn, which say only which sensors are heard.
 void put_no_hints(const Reading& reading, std::vector<HeadingHint>& hints);
 
 // Turns orientations by these offsets; NaN where one is NaN.
@@ -62,7 +66,7 @@ class SensorHeadings {
   double common_rad(std::span<const HeadingHint> hints) const;
 
   HeadingSettings settings_;
-  std::vector<HeadingHint> sums_;
+  std::vector<TrustedTurn> sums_;
   std::vector<double> offsets_rad_;
 };
 

@@ -30,14 +30,16 @@ void put_hints(const FrameSolver& solver, int num_threads, std::span<const Readi
     reading.orientation.setConstant(std::numeric_limits<double>::quiet_NaN());
   const retrieval::FeatureRows signals = signal_rows(without, solver.signals());
   const TwoWayPaths paths = paths_of(solver, signals, num_threads, at);
-  in_parallel<char>(
+  auto found = in_parallel<std::vector<HeadingHint>>(
       readings.size(), num_threads, [&](std::size_t) { at(readings.size()); },
       [&](std::size_t t) {
         static thread_local std::vector<Mat3> posed;
         solver.retrieve_posed_sensors(paths.paths(t), window_at(signals, t), posed);
-        put_heading_hints(readings[t], posed, hints[t]);
-        return '\0';
+        std::vector<HeadingHint> of_reading;
+        put_heading_hints(readings[t], posed, of_reading);
+        return of_reading;
       });
+  std::move(found.begin(), found.end(), hints.begin());
 }
 
 }  // namespace

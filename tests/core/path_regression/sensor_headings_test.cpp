@@ -81,10 +81,10 @@ TEST(HeadingHint, IsTheTurnThatBringsAnOrientationNearestToThePose) {
     const std::vector<Mat3> a{posed}, b{measured.toRotationMatrix()};
     const HeadingHint hint = heading_hint(
         Eigen::Vector4d(measured.w(), measured.x(), measured.y(), measured.z()), posed);
-    EXPECT_NEAR(wrapped(std::arg(hint) - common_yaw_rad(a, b)), 0.0, 1e-9);
-    EXPECT_LE(std::abs(hint), 2.0 + 1e-9);
+    EXPECT_NEAR(wrapped(std::arg(hint.turn) - common_yaw_rad(a, b)), 0.0, 1e-9);
+    EXPECT_LE(std::abs(hint.turn), 2.0 + 1e-9);
   }
-  EXPECT_EQ(heading_hint(Eigen::Vector4d::Constant(std::nan("")), Mat3::Identity()), 0.0);
+  EXPECT_FALSE(heading_hint(Eigen::Vector4d::Constant(std::nan("")), Mat3::Identity()).is_heard);
 }
 
 TEST(SensorHeadings, AreFoundFromRightPoses) {
@@ -157,7 +157,7 @@ TEST(SensorHeadings, OfASilentSensorAreFoundAnew) {
   Performance performance(100, 0.0, [](int s, double t) {
     return constant_off(s, 0.0) + (s == 1 && t > 2.0 ? 0.8 : 0.0);
   });
-  for (std::size_t t = 45; t < 51; ++t) performance.hints[t][1] = 0.0;
+  for (std::size_t t = 45; t < 51; ++t) performance.hints[t][1] = {};
   SensorHeadings headings(all_own());
   for (std::size_t t = 0; t < 51; ++t) headings.observe(performance.hints[t]);
   EXPECT_TRUE(std::isnan(headings.offsets_rad()[1]));
@@ -200,8 +200,9 @@ TEST(WholeTakeOffsets, DoWithHintsHereAndThere) {
   silent.orientation.col(1) << 1.0, 0.0, 0.0, 0.0;
   std::vector<HeadingHint> hints;
   put_no_hints(silent, hints);
-  EXPECT_EQ(hints[0], 0.0);
-  EXPECT_NE(hints[1], 0.0);
+  EXPECT_FALSE(hints[0].is_heard);
+  EXPECT_TRUE(hints[1].is_heard);
+  EXPECT_EQ(hints[1].turn, 0.0);
 }
 
 TEST(WholeTakeOffsets, OfAMomentAreUnknown) {
